@@ -1178,15 +1178,19 @@ class ConstraintStepResult:
         """
 
     @property
+    def friction(self) -> FrictionStep:
+        """`FrictionStep` of `contacts`, in place of clusters."""
+
+    @property
     def F_Oo_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
         """
-        (num_objects, 6) [torque; force] of contact on each object at the origin of its frame, in W.
+        (num_objects, 6) [torque; force] of contact on each object at the origin of its frame, in W, friction included.
         """
 
     @property
     def hessian(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
         """
-        (6, 6) slope of the forces of the step by the tool's motion in it, [N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows that push. What adds dF to the wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
+        (6, 6) slope of the forces of the step by the tool's motion in it, [N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows that push, and the slope of friction. What adds dF to the wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
         """
 
     @property
@@ -1243,7 +1247,7 @@ class ConstraintStepper:
     As in SAP (Castro et al., "An Unconstrained Convex Formulation of Compliant Contact", 2023), contact is a convex problem of one implicit step. Threads that share a stepper take turns.
     """
 
-    def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces], skin_m: numpy.typing.ArrayLike, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: numpy.typing.ArrayLike, period_s: float) -> None:
+    def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces], skin_m: numpy.typing.ArrayLike, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: numpy.typing.ArrayLike, period_s: float, coefficient: numpy.typing.ArrayLike = (), break_away_m: float = 1e-4) -> None:
         """
         Puts all objects at rest at the identity pose.
 
@@ -1255,9 +1259,17 @@ class ConstraintStepper:
             gains: Spring and damper of the coupling, and their limits.
             q_HT: (7,) pose of the tool in the handle.
             period_s: Duration h of a tick, s.
+            coefficient: (num_objects,) friction μ with each object. Defaults to none.
+            break_away_m: How far the tool gives way before it slides, m. Defaults to 0.1 mm.
 
         Raises:
-            ValueError: not decompositions, not one skin for each object, or a number is out of range.
+            ValueError: not decompositions, not one skin or coefficient for each object, or a number is out of range.
+        """
+
+    @property
+    def num_anchors(self) -> int:
+        """
+        How many numbers the anchors of friction are: 8 for each object, or nothing.
         """
 
     @property
@@ -1281,7 +1293,7 @@ class ConstraintStepper:
             IndexError: no such object.
         """
 
-    def step(self, q_WT: numpy.typing.ArrayLike, V_WT: numpy.typing.ArrayLike, q_WH: numpy.typing.ArrayLike, V_WH: numpy.typing.ArrayLike, F_applied_To_W: numpy.typing.ArrayLike = ...) -> ConstraintStepResult:
+    def step(self, q_WT: numpy.typing.ArrayLike, V_WT: numpy.typing.ArrayLike, q_WH: numpy.typing.ArrayLike, V_WH: numpy.typing.ArrayLike, F_applied_To_W: numpy.typing.ArrayLike = ..., anchors: numpy.typing.ArrayLike = ()) -> ConstraintStepResult:
         """
         Advances the tool by a tick.
 
@@ -1289,9 +1301,10 @@ class ConstraintStepper:
             q_WT, V_WT: (7,) pose [qw qx qy qz x y z] and (6,) spatial velocity [rad/s; m/s] of the tool.
             q_WH, V_WH: The same of the handle.
             F_applied_To_W: (6,) all other wrenches on the tool, [torque; force] at To in W, its weight among them. Defaults to zero.
+            anchors: (num_anchors,) the last tick's `friction.next_state`. Defaults to those of a tool that has touched nothing.
 
         Raises:
-            ValueError: a value is not finite; what was learnt stays.
+            ValueError: a value is not finite, or there are other anchors; what was learnt stays.
         """
 
     def differentiate(self, state: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, F_applied_To_W: AutoDiffVector, X_WO: Sequence[AutoDiffVector], V_WO: Sequence[AutoDiffVector]) -> AutoDiffVector:

@@ -74,7 +74,8 @@ def check_conversion(system: System) -> None:
     found = [
         leaf
         for leaf in walk_leaves(system)
-        if not leaf.get_system_scalar_converter().IsConvertible[AutoDiffXd, float]()
+        if hasattr(leaf, "no_derivatives")
+        or not leaf.get_system_scalar_converter().IsConvertible[AutoDiffXd, float]()
     ]
     reasons = [
         f"{calc_path(system, leaf)} {leaf.no_derivatives}"

@@ -150,7 +150,9 @@ class SceneChanges:
         effects = dataclasses.replace(self.scene.effects, **{name: effect})
         if is_constraint(self.scene.contact):
             try:
-                check_constraint_law(self.scene.contact, effects, sheds_load=False)
+                check_constraint_law(
+                    self.scene.contact, effects, sheds_load=False, materials={}
+                )
             except SceneError as error:
                 raise ChangeError(str(error)) from error
         environment = [

@@ -17,13 +17,19 @@ from drake_haptics.loop.contact import (
     find_contact_gains,
     find_skins,
 )
-from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
+from drake_haptics.loop.effects import (
+    EffectSite,
+    add_effects,
+    find_coefficients,
+    find_springs,
+)
 from drake_haptics.loop.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.scene.contact_law import check_constraint_law, is_constraint
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
     Effects,
+    FrictionParameters,
     Material,
 )
 from drake_haptics.systems.contact.contact_query import ContactObject
@@ -36,7 +42,7 @@ from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 if TYPE_CHECKING:
     pass
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 from drake_haptics._core import CouplingGains
 
@@ -122,9 +128,15 @@ def AddHapticLoop(
         builder.AddNamedSystem("load_shedding", load_shedding)
     builder.AddNamedSystem("device", device)
     if is_constraint(contact):
-        check_constraint_law(contact, effects, sheds_load=sheds_load)
+        check_constraint_law(
+            contact,
+            effects,
+            sheds_load=sheds_load,
+            materials={f"materials[{i}]": item for i, item in enumerate(materials)},
+        )
         from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
 
+        friction = effects.friction
         step = ConstraintToolStep(
             tool,
             objects,
@@ -134,7 +146,9 @@ def AddHapticLoop(
             X_HT,
             X_WT,
             period_s,
-            forces,
+            [name for name in forces if name != "friction"],
+            coefficient=find_coefficients(friction, materials) if friction else [],
+            break_away_m=(friction or FrictionParameters()).break_away_m,
         )
         builder.AddNamedSystem("constraint_tool_step", step)
         base = BaseSystems(device, step, step, load_shedding, None)
@@ -170,8 +184,10 @@ def AddHapticLoop(
         stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
         contacts_N_per_m = stiffness.tolist()
     _connect_base(builder, base)
+    # The constraint law's step has its friction itself.
+    is_own = base.penalty is None and effects.friction is not None
     site = EffectSite(
-        effects=effects,
+        effects=replace(effects, friction=None) if is_own else effects,
         builder=builder,
         sources=_find_sources(base),
         tool=tool,
@@ -183,14 +199,13 @@ def AddHapticLoop(
         springs=find_springs(device, gains, contacts_N_per_m),
     )
     systems = add_effects(site)
-    sources = {
-        "coupling": base.coupling_model,
-        "contact": base.contact_model,
-        **{
-            name: getattr(systems, name).GetOutputPort("wrench_model")
-            for name in forces
-        },
-    }
+    sources = {"coupling": base.coupling_model, "contact": base.contact_model}
+    for name in forces:
+        if name == "friction" and is_own:
+            systems = replace(systems, friction=base.haptic_tool)
+            sources[name] = base.haptic_tool.GetOutputPort("friction_model")
+        else:
+            sources[name] = getattr(systems, name).GetOutputPort("wrench_model")
     connect_by_name(builder, base.haptic_tool, sources)
     chain: dict[str, OutputPort] = {}
     if is_chained:

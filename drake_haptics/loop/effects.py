@@ -117,14 +117,21 @@ def _add_shading(effect: ShadingParameters, site: EffectSite) -> System:
 def _add_friction(effect: FrictionParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
 
-    own = [material.friction_coefficient for material in site.materials]
     system = StickSlipFriction(
         site.objects,
         period_s=site.period_s,
-        coefficient=[effect.coefficient if x is None else x for x in own],
+        coefficient=find_coefficients(effect, site.materials),
         break_away_m=effect.break_away_m,
     )
     return _add(site, "stick_slip_friction", system)
+
+
+def find_coefficients(
+    effect: FrictionParameters, materials: Sequence[Material]
+) -> list[float]:
+    """Returns the friction of each object: its material's, or else the effect's."""
+    own = [material.friction_coefficient for material in materials]
+    return [effect.coefficient if mu is None else mu for mu in own]
 
 
 def _add_braking(effect: BrakingParameters, site: EffectSite) -> System:

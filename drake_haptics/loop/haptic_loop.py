@@ -137,14 +137,15 @@ class EffectSystems:
 
     Attributes:
         shading: Smooths the contacts' normals.
-        friction: Stick-slip friction.
+        friction: Stick-slip friction; under `contact.law: constraint` the same system
+            as `haptic_tool`.
         braking: Brakes before contact.
         gravity: The tool's weight.
         passivity: Takes surplus energy out of the device's wrench.
     """
 
     shading: ForceShading | None = None
-    friction: StickSlipFriction | None = None
+    friction: StickSlipFriction | ConstraintToolStep | None = None
     braking: PreContactBraking | None = None
     gravity: ToolGravity | None = None
     passivity: PassivityControl | None = None
@@ -201,8 +202,9 @@ class HapticLoop(BaseSystems):
           alone, on the tool.
         * Under `contact.law: constraint` they are those of `ConstraintToolStep`, and
           `clusters` are its `contacts`: each pushes by itself.
-        * `friction_force` (with friction) is that of `StickSlipFriction`, `energy_J`
-          (with passivity control) that of `PassivityControl`.
+        * `friction_force` (with friction) is that of `StickSlipFriction` or
+          `ConstraintToolStep`, `energy_J` (with passivity control) that of
+          `PassivityControl`.
         """
         device, tool = self.device, self.haptic_tool
         outputs = {
@@ -252,7 +254,8 @@ def ConnectMovingObject(
         parts += [loop.penalty_force, loop.pose_sampler, loop.contact_extrapolator]
         if loop.pose_sampler is None:
             parts.append(loop.contact_query)
-    systems = [part for part in parts if part is not None]
+    # Under the constraint law one system is several parts.
+    systems = [part for part in dict.fromkeys(parts) if part is not None]
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
     inputs = [
         (sources[port.get_name()], port)

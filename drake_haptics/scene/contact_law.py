@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.mesh.report import length
-from drake_haptics.scene.schema import ContactParameters, Effects
+from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.scene.yaml_loading import make_hint
 
 _LAWS = ("penalty", "constraint")
-# Effects that act on the springs of the penalty law.
-_OF_PENALTY = ("shading", "friction", "braking")
+# Effects that act on the springs of the penalty law, and a material's gains of these.
+_OF_PENALTY = ("shading", "braking")
+_GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
 
 
 def is_constraint(contact: ContactParameters) -> bool:
@@ -33,7 +36,11 @@ def check_law(law: str) -> None:
 
 
 def check_constraint_law(
-    contact: ContactParameters, effects: Effects, *, sheds_load: bool
+    contact: ContactParameters,
+    effects: Effects,
+    *,
+    sheds_load: bool,
+    materials: Mapping[str, Material],
 ) -> None:
     """Refuses what does nothing under the constraint law.
 
@@ -41,6 +48,7 @@ def check_constraint_law(
         contact: Of that law.
         effects: As in a scene.
         sheds_load: Whether ticks have a budget.
+        materials: Of the objects, by the keys where they stand.
 
     Raises:
         SceneError: Something is asked for that this law does not have; it says what to
@@ -49,6 +57,8 @@ def check_constraint_law(
     asked = {f"effects.{name}": getattr(effects, name) for name in _OF_PENALTY}
     asked["contact.query_rate_hz"] = contact.query_rate_hz
     asked["device.tick_budget_us"] = sheds_load or None
+    for where, material in materials.items():
+        asked |= {f"{where}.{gain}": getattr(material, gain) for gain in _GAINS}
     idle = [key for key, value in asked.items() if value is not None]
     if idle:
         verb, what = ("does", "it") if len(idle) == 1 else ("do", "them")

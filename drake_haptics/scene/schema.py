@@ -16,8 +16,10 @@ class Material:
     """What an object is made of; what is not given is the scene's.
 
     Attributes:
-        stiffness_N_per_m: Instead of `contact.stiffness_N_per_m`, N/m.
-        damping_Ns_per_m: Instead of `contact.damping_Ns_per_m`, N·s/m.
+        stiffness_N_per_m: Instead of `contact.stiffness_N_per_m`, N/m; of
+            `contact.law: penalty` alone.
+        damping_Ns_per_m: Instead of `contact.damping_Ns_per_m`, N·s/m; of
+            `contact.law: penalty` alone.
         friction_coefficient: Instead of `effects.friction.coefficient`; the scene
             must name that effect.
         shading: Whether the object is shaded; the scene must name that effect.

@@ -76,6 +76,10 @@ def check_values(scene: Scene) -> None:
             scene.contact,
             scene.effects,
             sheds_load=scene.device.tick_budget_us is not None,
+            materials={
+                f"environment[{i}].material": item.material
+                for i, item in enumerate(scene.environment)
+            },
         )
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")

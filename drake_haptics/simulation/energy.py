@@ -86,7 +86,7 @@ class EnergyLedger:
             self._gains = gains
             self._ledger.begin_again(gains.coupling)
         self._ledger.add(
-            self._tool.get_discrete_state_vector().value(),
+            self._tool.get_discrete_state(0).value(),
             self._X_WH(),
             self._F_Ho_W_rendered(),
             self._coupling(),

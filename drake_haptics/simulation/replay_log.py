@@ -124,7 +124,7 @@ def _run(
 
     def end_tick(context: Context) -> EventStatus:
         # There are no contacts of such a tool.
-        if not math.isfinite(sum(tool.get_discrete_state_vector().value().tolist())):
+        if not math.isfinite(sum(tool.get_discrete_state(0).value().tolist())):
             raise TickLogError(
                 f"stopped at {context.get_time():.4f} s: the tool's state is not"
                 " finite; the scene is unstable under this motion"

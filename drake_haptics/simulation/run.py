@@ -241,7 +241,7 @@ def _make_measure(
     def measure(context: Context, tick_s: float) -> None:
         shown = hold_context.get_discrete_state_vector().value().tolist()
         # A handle that is lost takes the tool with it.
-        tool_state = tool_context.get_discrete_state_vector().value()
+        tool_state = tool_context.get_discrete_state(0).value()
         if not math.isfinite(sum(tool_state.tolist())):
             # There are no contacts of such a tool.
             statistics.add(tick_s, 0.0, 0, 0, math.inf, shown)

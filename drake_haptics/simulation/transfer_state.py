@@ -68,7 +68,7 @@ def transfer_context(
         # The tool's body is another system under another law of contact.
         state = old.loop.haptic_tool.GetMyContextFromRoot(old_context)
         new.loop.haptic_tool.GetMyMutableContextFromRoot(context).SetDiscreteState(
-            state.get_discrete_state_vector().value()
+            0, state.get_discrete_state(0).value()
         )
         if new.loop.penalty is not None and old.loop.penalty is not None:
             query, known = new.loop.contact_query, old.loop.contact_query

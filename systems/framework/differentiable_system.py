@@ -195,8 +195,12 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
     """Declares in a twin all that a system has.
 
     Raises:
-        ValueError: It has something that a twin cannot have.
+        ValueError: It says that it has none, or has something that a twin cannot have.
     """
+    if hasattr(system, "no_derivatives"):
+        raise ValueError(
+            f"no derivatives: {system.GetSystemPathname()} {system.no_derivatives}"
+        )
     defaults = system.CreateDefaultContext()
     timing = system.GetUniquePeriodicDiscreteUpdateAttribute()
     for impossible, what in [

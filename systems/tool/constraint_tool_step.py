@@ -98,6 +98,8 @@ class ConstraintToolStep(Diagram):
         - F_O_W (with objects that move)
         - coupling
         - wrench_model
+        - friction_force (with friction)
+        - friction_model (with friction)
 
     Poses are [qw qx qy qz x y z] in the world, m; `V_WH`, `V_WT` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin, rad/s and m/s. Each other input is
@@ -111,19 +113,27 @@ class ConstraintToolStep(Diagram):
       begins: a pair of pieces has several where it is flush.
     * `contact_wrench` is their `ConstraintWrench`.
     * `F_To_W` (6) is their wrench [τ; f] on the tool at its origin, mean of the tick.
-    * `F_O_W` (6 for each object that moves) are the wrenches on those objects.
+    * `F_O_W` (6 for each object that moves) are the wrenches on those objects, those of
+      friction among them.
     * `wrench_model` (78) is [F; K; B] of the contacts: what they push with as the tool
       moves by δ in the tick is F - K δ; B is zero. K is that of the rows that push.
     * `coupling` (78) is that of `VirtualCoupling`.
+    * `friction_force` is the `drake_haptics._core.FrictionStep` of `contacts`, and
+      `friction_model` (78) its [F; K; B] on the tool, as of `StickSlipFriction`.
 
-    The state is one discrete group (13), [X_WT; V_WT], updated every period from 0 s
-    on. What the search knows from the last tick is the memory of a Context, and never
-    changes an answer by more than round-off.
+    Friction takes part in the same step: where the tool sticks it hangs on an anchor,
+    and slides where the normal forces of this very tick do not hold it
+    (core/constraint/row_friction.h).
+
+    The state is a discrete group (13), [X_WT; V_WT], and with friction a second one
+    (8 for each object), the anchors, both updated every period from 0 s on. What the
+    search knows from the last tick is the memory of a Context, and never changes an
+    answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
-    `set_gains`. Outputs have no derivatives by them. Under AutoDiffXd the features
-    that face each other stay, a row that just begins to push does push, and
-    `contacts`, `contact_wrench` and `wrench_model` have no value.
+    `set_gains`. Outputs have no derivatives by them, and none at all with friction.
+    Under AutoDiffXd the features that face each other stay, a row that just begins to
+    push does push, and `contacts`, `contact_wrench` and `wrench_model` have no value.
     """
 
     def __init__(
@@ -137,6 +147,9 @@ class ConstraintToolStep(Diagram):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str] = (),
+        *,
+        coefficient: Sequence[float] = (),
+        break_away_m: float = 1e-4,
     ):
         """Constructs the system.
 
@@ -150,10 +163,13 @@ class ConstraintToolStep(Diagram):
             X_WT: Default pose; the tool starts at rest.
             period_s: The tick, s.
             wrench_names: A name for each input of another wrench.
+            coefficient: μ of friction with each object. Defaults to no friction.
+            break_away_m: How far the tool gives way before it slides, m.
 
         Raises:
-            ValueError: The period or a skin is not positive, there is not one for each
-                object, there is no object, or a name is used twice.
+            ValueError: The period, a skin or the break-away is not positive, a
+                coefficient is negative, there is not one for each object, there is no
+                object, or a name is used twice.
         """
         super().__init__()
         if not period_s > 0.0:
@@ -178,6 +194,8 @@ class ConstraintToolStep(Diagram):
                 X_WT,
                 period_s,
                 wrench_names,
+                coefficient,
+                break_away_m,
             ),
         )
         step = self._step
@@ -247,8 +265,12 @@ class _ConstraintStep(DifferentiableSystem):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str],
+        coefficient: Sequence[float],
+        break_away_m: float,
     ):
         super().__init__()
+        self._coefficient = np.array(coefficient, dtype=float)
+        self._break_away_m = break_away_m
         self._q_HT = pose_to_vector(X_HT)
         self._tool = tool
         self._objects = tuple(objects)
@@ -256,7 +278,7 @@ class _ConstraintStep(DifferentiableSystem):
         self._dynamics = dynamics
         self._period_s = period_s
         # Wrong arguments are refused here, and not at the first tick.
-        self._make_stepper(gains)
+        num_anchors = self._make_stepper(gains).num_anchors
         self._gains = self.DeclareAbstractParameter(Value[object](gains))
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
@@ -274,6 +296,12 @@ class _ConstraintStep(DifferentiableSystem):
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
+        if num_anchors > 0:
+            self.DeclareDiscreteState(num_anchors)
+            self.no_derivatives = (
+                "takes friction into its step: take effects.friction out, or take"
+                " contact.law: penalty"
+            )
         # The memory of a Context.
         self._stepper = self.DeclareCacheEntry(
             description="stepper",
@@ -324,6 +352,16 @@ class _ConstraintStep(DifferentiableSystem):
             self._calc_wrench_model,
             from_all,
         )
+        if num_anchors > 0:
+            self.DeclareAbstractOutputPort(
+                "friction_force",
+                Value[object],
+                self._calc_friction_force,
+                from_result,
+            )
+            self.DeclareVectorOutputPort(
+                "friction_model", 78, self._calc_friction_model, from_result
+            )
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
@@ -335,6 +373,8 @@ class _ConstraintStep(DifferentiableSystem):
             gains,
             self._q_HT,
             self._period_s,
+            self._coefficient,
+            self._break_away_m,
         )
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
@@ -354,7 +394,7 @@ class _ConstraintStep(DifferentiableSystem):
         stepper: ConstraintStepper = self._stepper.Eval(context)
         for i, (X_WO, V_WO) in self._motions.items():
             stepper.set_object_pose(i, X_WO.Eval(context), V_WO.Eval(context))
-        state = context.get_discrete_state_vector().value()
+        state = context.get_discrete_state(0).value()
         F_To_W = np.zeros(6)
         for port in self._wrenches:
             if port.HasValue(context):
@@ -366,8 +406,16 @@ class _ConstraintStep(DifferentiableSystem):
                 self._X_WH.Eval(context),
                 self._V_WH.Eval(context),
                 F_To_W,
+                self._read_anchors(context),
             )
         )
+
+    def _read_anchors(self, context: Context) -> np.ndarray:
+        """Returns the anchors of friction at the tick's beginning."""
+        if len(self._coefficient) == 0:
+            return self._coefficient
+        anchors: np.ndarray = context.get_discrete_state(1).value()
+        return anchors
 
     def _eval_result(self, context: Context) -> ConstraintStepResult:
         return self._result.Eval(context)
@@ -440,7 +488,9 @@ class _ConstraintStep(DifferentiableSystem):
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         result = self._eval_result(context)
-        next_state.set_value(np.concatenate([result.q_WT, result.V_WT]))
+        next_state.set_value(0, np.concatenate([result.q_WT, result.V_WT]))
+        if len(self._coefficient) > 0:
+            next_state.set_value(1, result.friction.next_state)
 
     def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
         output.set_value(self._eval_result(context).F_Ho_W_commanded)
@@ -452,7 +502,7 @@ class _ConstraintStep(DifferentiableSystem):
         result = self._eval_result(context)
         contacts, lambda_N = result.contacts, result.lambda_N
         f_W = lambda_N[:, None] * contacts.nhat_BA_W
-        p_WTo = context.get_discrete_state_vector().value()[4:7]
+        p_WTo = context.get_discrete_state(0).value()[4:7]
         tau_W = np.cross(contacts.p_WCa - p_WTo, f_W)
         output.set_value(
             ConstraintWrench(
@@ -479,8 +529,14 @@ class _ConstraintStep(DifferentiableSystem):
         )
         output.SetFromVector(np.concatenate([F, K.ravel(), np.zeros(36)]))
 
+    def _calc_friction_force(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._eval_result(context).friction)
+
+    def _calc_friction_model(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_result(context).friction.wrench_model)
+
     def _calc_coupling(self, context: Context, output: BasicVector) -> None:
-        state = context.get_discrete_state_vector().value()
+        state = context.get_discrete_state(0).value()
         wrenches = coupling_wrench(
             self._X_WH.Eval(context),
             self._V_WH.Eval(context),

@@ -18,7 +18,7 @@ EVERYTHING = [
     {"do": "set", "key": "effects.braking.distance_m", "to": 5e-3},
     {"do": "effect", "name": "gravity", "on": False},
 ]
-OF_SPRINGS = ("shading", "friction", "braking")
+OF_SPRINGS = ("shading", "braking")
 
 
 @pytest.fixture

@@ -33,7 +33,12 @@ from drake_haptics.device.backend import DeviceReading
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
-from drake_haptics.scene.schema import Effects, FrictionParameters, GravityParameters
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    Effects,
+    FrictionParameters,
+    GravityParameters,
+)
 from drake_haptics.scene.settings import change_scene
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.live_values import write_live_values
@@ -50,9 +55,7 @@ SKIN = 3e-4
 ABOVE, PRESS = TOOL_HALF_HEIGHT + 5e-3, TOOL_HALF_HEIGHT - 5e-3
 WITHOUT_SPRINGS = (
     "effects.shading=",
-    "effects.friction=",
     "effects.braking=",
-    "environment[0].material.friction_coefficient=",
 )
 
 
@@ -253,6 +256,38 @@ def test_the_tool_weighs_and_passivity_control_finds_a_reserve(pressed):
     assert math.isfinite(read(haptic, context, "energy_J")[0])
 
 
+def test_friction_is_felt_drawn_and_booked(pressed):
+    """The hand draws the cube along a plate: it feels μ N, and no energy is made."""
+    pressed.hand.path.waypoints[1].time_s = 0.3
+    last = dataclasses.replace(pressed.hand.path.waypoints[1], time_s=0.8)
+    last.position_m = [0.02, 0.0, PRESS]
+    pressed.hand.path.waypoints.append(last)
+    pressed.effects.friction = FrictionParameters(coefficient=0.4)
+    meshcat = Meshcat(MeshcatParams(host="localhost"))
+    haptic = BuildHapticDiagram(pressed, meshcat=meshcat)
+    haptic.visualizer.StartRecording()
+    seen = []
+
+    def note(context):
+        seen.append(
+            [
+                read(haptic, context, "friction_force"),
+                read(haptic, context, "contact_wrench").lambda_N,
+            ]
+        )
+
+    books = run(haptic, 0.6, energy=True, on_tick=note).energy_J
+    friction, N = seen[-1]
+    assert friction.sliding.all() and len(friction.sliding) == len(N) >= 3
+    np.testing.assert_allclose(
+        friction.f_cluster_W.sum(axis=0), [-0.4 * N.sum(), 0.0, 0.0], atol=1e-3
+    )
+    assert meshcat.HasPath("/haptics/friction")
+    assert books["friction"]["lost"] > 1e-3
+    assert books["friction"]["beyond"] < 5e-5
+    assert books["contact"]["beyond"] < 5e-5
+
+
 def test_gains_of_the_coupling_change_as_it_runs(pressed):
     haptic = BuildHapticDiagram(pressed)
     assert {item.group for item in live_keys(pressed)} == {"coupling"}
@@ -297,9 +332,9 @@ def test_a_loop_of_your_own_refuses_what_a_scene_does(pressed):
         "X_HT": RigidTransform(),
         "X_WT": RigidTransform(),
         "period_s": 1e-3,
-        "effects": Effects(friction=FrictionParameters()),
+        "effects": Effects(braking=BrakingParameters()),
     }
-    with pytest.raises(SceneError, match=r"effects\.friction does nothing"):
+    with pytest.raises(SceneError, match=r"effects\.braking does nothing"):
         AddHapticLoop(DiagramBuilder(), **arguments)
 
 
@@ -391,6 +426,12 @@ def test_a_start_in_a_shape_is_told_and_led_out(pressed):
         statistics = run(haptic, 0.5)
     assert statistics.max_penetration_m == pytest.approx(1e-3, rel=0.05)
     assert statistics.max_force_N < 3.0
+
+
+def test_stability_with_friction_is_refused_by_name(pressed):
+    pressed.effects.friction = FrictionParameters()
+    with pytest.raises(ValueError, match=r"no derivatives.*effects\.friction"):
+        scene_stability.analyze_scene(pressed, map_size=0)
 
 
 def test_stability_is_that_of_the_contact_that_is_felt(pressed, monkeypatch):

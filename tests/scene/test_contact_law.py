@@ -1,6 +1,7 @@
 """The key `contact.law`: its names, what each law leaves out, and what is said."""
 
 import math
+import re
 
 import pytest
 
@@ -27,7 +28,6 @@ from drake_haptics.scene.validation import calc_skin_speed, check_rendering
 CONSTRAINT = ContactParameters(law="constraint", skin_m=2e-4)
 OF_PENALTY = {
     "shading": ShadingParameters(),
-    "friction": FrictionParameters(),
     "braking": BrakingParameters(),
 }
 
@@ -68,7 +68,7 @@ def test_one_key_changes_the_law_and_back():
 def test_an_effect_on_springs_is_refused_by_name(name):
     effects = Effects(**{name: OF_PENALTY[name]})
     with pytest.raises(SceneError, match=rf"^effects\.{name} does nothing under"):
-        check_constraint_law(CONSTRAINT, effects, sheds_load=False)
+        check_constraint_law(CONSTRAINT, effects, sheds_load=False, materials={})
 
 
 def test_all_that_does_nothing_is_named_at_once():
@@ -80,12 +80,25 @@ def test_all_that_does_nothing_is_named_at_once():
     assert "gravity" not in str(refused.value)
     slow = ContactParameters(law="constraint", query_rate_hz=500.0)
     with pytest.raises(SceneError, match=r"contact\.query_rate_hz"):
-        check_constraint_law(slow, Effects(), sheds_load=False)
+        check_constraint_law(slow, Effects(), sheds_load=False, materials={})
 
 
-def test_effects_beside_contact_are_kept():
-    effects = Effects(gravity=GravityParameters(), passivity=PassivityParameters())
-    check_constraint_law(CONSTRAINT, effects, sheds_load=False)
+@pytest.mark.parametrize("gain", ["stiffness_N_per_m", "damping_Ns_per_m"])
+def test_a_material_that_gives_way_is_refused_by_name(gain):
+    scene = load_scene(find_scene("peg_in_hole"))
+    key = f"environment[0].material.{gain}"
+    with pytest.raises(SceneError, match=rf"^{re.escape(key)} does nothing under"):
+        change_scene(scene, [f"{key}=10"])
+    change_scene(scene, [f"{key}=10", "contact.law=penalty"])
+
+
+def test_effects_that_need_no_spring_are_kept():
+    effects = Effects(
+        friction=FrictionParameters(),
+        gravity=GravityParameters(),
+        passivity=PassivityParameters(),
+    )
+    check_constraint_law(CONSTRAINT, effects, sheds_load=False, materials={})
 
 
 def test_a_plant_keeps_the_penalty_law():

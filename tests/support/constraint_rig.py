@@ -24,7 +24,7 @@ class ConstraintLoop:
         V_WT: Its spatial velocity (6,), rad/s and m/s.
         q_WH: Pose (7,) of the handle at the last tick.
         work_J: Of each tick, what contact did on the tool.
-        results: Of each tick, where asked for.
+        anchors: Of friction, where there is some.
     """
 
     def __init__(
@@ -35,6 +35,7 @@ class ConstraintLoop:
         *,
         skin_m: float = SKIN_M,
         gains: _core.CouplingGains = COUPLING,
+        coefficient: float | None = None,
     ) -> None:
         self.stepper = _core.ConstraintStepper(
             tool.core,
@@ -44,26 +45,36 @@ class ConstraintLoop:
             gains,
             REST,
             PERIOD_S,
+            coefficient=[] if coefficient is None else [coefficient] * len(solids),
         )
+        self.anchors = np.zeros(self.stepper.num_anchors)
         self.q_WT = np.array(q_WT, dtype=float)
         self.V_WT = np.zeros(6)
         self.q_WH = self.q_WT.copy()
         self.work_J: list[float] = []
 
     def tick(
-        self, q_WH: np.ndarray, V_WH: np.ndarray | None = None
+        self,
+        q_WH: np.ndarray,
+        V_WH: np.ndarray | None = None,
+        F_applied: np.ndarray | None = None,
     ) -> _core.ConstraintStepResult:
         """Advances by a tick in which the handle turns by nothing unless it is said.
 
         Args:
             q_WH: Pose (7,) of the handle at the tick's end.
             V_WH: Its spatial velocity (6,). Defaults to its motion since the last.
+            F_applied: Other wrenches (6,) on the tool. Defaults to none.
         """
         if V_WH is None:
             move = (q_WH[4:] - self.q_WH[4:]) / PERIOD_S
             V_WH = np.concatenate([np.zeros(3), move])
         self.q_WH = np.array(q_WH, dtype=float)
-        result = self.stepper.step(self.q_WT, self.V_WT, self.q_WH, V_WH)
+        F = np.zeros(6) if F_applied is None else F_applied
+        result = self.stepper.step(
+            self.q_WT, self.V_WT, self.q_WH, V_WH, F, self.anchors
+        )
+        self.anchors = result.friction.next_state
         self.work_J.append(contact_wrench(result, self.q_WT[4:]) @ result.V_WT * 1e-3)
         self.q_WT, self.V_WT = result.q_WT, result.V_WT
         return result

@@ -29,10 +29,13 @@ class SharedStepper {
  public:
   SharedStepper(nb::handle tool, nb::handle objects, nb::handle skin,
                 const ToolInertia& dynamics, const CouplingGains& gains,
-                const PoseVector& q_HT, double period)
-      : stepper_(ToDecomposition(tool, "tool"), ToDecompositions(objects),
-                 {dynamics, gains, CheckedPose(q_HT, "q_HT"), period,
-                  ToNumbers(skin)}) {}
+                const PoseVector& q_HT, double period, nb::handle coefficient,
+                double break_away)
+      : stepper_(
+            ToDecomposition(tool, "tool"), ToDecompositions(objects),
+            {dynamics, gains, CheckedPose(q_HT, "q_HT"), period,
+             ToNumbers(skin, "skin_m"),
+             RowFriction(ToNumbers(coefficient, "coefficient"), break_away)}) {}
   SharedStepper(const SharedStepper& other) : stepper_(other.Copy()) {}
 
   // For what never changes.
@@ -59,11 +62,13 @@ class SharedStepper {
   }
 
   Result Step(const PoseVector& q_WT, const Vec6& V_WT, const PoseVector& q_WH,
-              const Vec6& V_WH, const Vec6& F_applied) {
+              const Vec6& V_WH, const Vec6& F_applied, nb::handle anchors) {
     Result result;
+    std::vector<double> numbers = ToNumbers(anchors, "anchors");
+    if (numbers.empty()) numbers.resize(constants().num_anchors());
     const Turn turn(&mutex_, Turn::Gil::kHold);
     const auto start = std::chrono::steady_clock::now();
-    stepper_.Step({q_WT, V_WT}, q_WH, V_WH, F_applied, &result);
+    stepper_.Step({q_WT, V_WT}, q_WH, V_WH, F_applied, numbers, &result);
     const std::chrono::duration<double> elapsed =
         std::chrono::steady_clock::now() - start;
     // The search and the step are one: all of it counts as the query.
@@ -111,10 +116,11 @@ class SharedStepper {
   }
 
  private:
-  static std::vector<double> ToNumbers(nb::handle value) {
-    const RealArray array(value, "skin_m");
+  static std::vector<double> ToNumbers(nb::handle value, const char* name) {
+    const RealArray array(value, name);
     if (array.ndim() != 1) {
-      throw std::invalid_argument("skin_m must be (num_objects,), has shape " +
+      throw std::invalid_argument(std::string(name) +
+                                  " must have one dimension, has shape " +
                                   array.shape_text());
     }
     std::vector<double> numbers;
@@ -165,18 +171,27 @@ void BindResult(nb::module_& m) {
           "`ContactSet` of the rows that push, ordered by object and pieces. A "
           "pair has several where it is flush.")
       .def_prop_ro(
+          "friction",
+          [](nb::handle self) {
+            return nb::cast(&nb::cast<const Result&>(self).friction,
+                            nb::rv_policy::reference_internal, self);
+          },
+          nb::sig("def friction(self) -> FrictionStep"),
+          "`FrictionStep` of `contacts`, in place of clusters.")
+      .def_prop_ro(
           "F_Oo_W",
           [](const Result& r) {
             return ToRows<double, 6>(r.F_Oo_W,
                                      [](const Vec6& F, int k) { return F[k]; });
           },
           "(num_objects, 6) [torque; force] of contact on each object at the "
-          "origin of its frame, in W.")
+          "origin of its frame, in W, friction included.")
       .def_prop_ro(
           "hessian", [](const Result& r) { return r.hessian; },
           "(6, 6) slope of the forces of the step by the tool's motion in it, "
           "[N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows "
-          "that push. What adds dF to the wrench on the tool adds A⁻¹ dF to "
+          "that push, and the slope of friction. What adds dF to the wrench on "
+          "the tool adds A⁻¹ dF to "
           "its motion, and A⁻¹ dF / h to V_WT.")
       .def_prop_ro(
           "contact_stiffness",
@@ -234,10 +249,12 @@ void BindConstraintStep(nb::module_& m) {
   stepper
       .def(
           nb::init<nb::handle, nb::handle, nb::handle, const ToolInertia&,
-                   const CouplingGains&, const PoseVector&, double>(),
+                   const CouplingGains&, const PoseVector&, double, nb::handle,
+                   double>(),
           nb::arg("tool").none(), nb::arg("objects").none(),
           nb::arg("skin_m").none(), nb::arg("dynamics"), nb::arg("gains"),
           nb::arg("q_HT"), nb::arg("period_s"),
+          nb::arg("coefficient") = nb::tuple(), nb::arg("break_away_m") = 1e-4,
           nb::sig("def __init__(self, tool: "
                   "drake_haptics.geometry.decomposition.decompose."
                   "Decomposition | ConvexPieces, objects: collections.abc."
@@ -245,7 +262,8 @@ void BindConstraintStep(nb::module_& m) {
                   "Decomposition | ConvexPieces], skin_m: "
                   "numpy.typing.ArrayLike, dynamics: RigidToolDynamics, gains: "
                   "CouplingGains, q_HT: numpy.typing.ArrayLike, period_s: "
-                  "float) -> None"),
+                  "float, coefficient: numpy.typing.ArrayLike = (), "
+                  "break_away_m: float = 1e-4) -> None"),
           "Puts all objects at rest at the identity pose.\n\n"
           "Args:\n"
           "    tool: Pieces of the tool.\n"
@@ -255,10 +273,22 @@ void BindConstraintStep(nb::module_& m) {
           "    dynamics: Inertia of the tool.\n"
           "    gains: Spring and damper of the coupling, and their limits.\n"
           "    q_HT: (7,) pose of the tool in the handle.\n"
-          "    period_s: Duration h of a tick, s.\n\n"
+          "    period_s: Duration h of a tick, s.\n"
+          "    coefficient: (num_objects,) friction μ with each object. "
+          "Defaults "
+          "to none.\n"
+          "    break_away_m: How far the tool gives way before it slides, m. "
+          "Defaults to 0.1 mm.\n\n"
           "Raises:\n"
-          "    ValueError: not decompositions, not one skin for each object, "
-          "or a number is out of range.")
+          "    ValueError: not decompositions, not one skin or coefficient for "
+          "each object, or a number is out of range.")
+      .def_prop_ro(
+          "num_anchors",
+          [](const SharedStepper& self) {
+            return self.constants().num_anchors();
+          },
+          "How many numbers the anchors of friction are: 8 for each object, or "
+          "nothing.")
       .def_prop_ro(
           "num_objects",
           [](const SharedStepper& self) {
@@ -286,19 +316,24 @@ void BindConstraintStep(nb::module_& m) {
           "step", &SharedStepper::Step, nb::arg("q_WT"), nb::arg("V_WT"),
           nb::arg("q_WH"), nb::arg("V_WH"),
           nb::arg("F_applied_To_W") = Vec6(Vec6::Zero()),
+          nb::arg("anchors") = nb::tuple(),
           nb::sig("def step(self, q_WT: numpy.typing.ArrayLike, V_WT: "
                   "numpy.typing.ArrayLike, q_WH: numpy.typing.ArrayLike, V_WH: "
                   "numpy.typing.ArrayLike, F_applied_To_W: "
-                  "numpy.typing.ArrayLike = ...) -> ConstraintStepResult"),
+                  "numpy.typing.ArrayLike = ..., anchors: "
+                  "numpy.typing.ArrayLike = ()) -> ConstraintStepResult"),
           "Advances the tool by a tick.\n\n"
           "Args:\n"
           "    q_WT, V_WT: (7,) pose [qw qx qy qz x y z] and (6,) spatial "
           "velocity [rad/s; m/s] of the tool.\n"
           "    q_WH, V_WH: The same of the handle.\n"
           "    F_applied_To_W: (6,) all other wrenches on the tool, [torque; "
-          "force] at To in W, its weight among them. Defaults to zero.\n\n"
+          "force] at To in W, its weight among them. Defaults to zero.\n"
+          "    anchors: (num_anchors,) the last tick's `friction.next_state`. "
+          "Defaults to those of a tool that has touched nothing.\n\n"
           "Raises:\n"
-          "    ValueError: a value is not finite; what was learnt stays.")
+          "    ValueError: a value is not finite, or there are other anchors; "
+          "what was learnt stays.")
       .def("differentiate", &SharedStepper::Differentiate, nb::arg("state"),
            nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("F_applied_To_W"),
            nb::arg("X_WO"), nb::arg("V_WO"),

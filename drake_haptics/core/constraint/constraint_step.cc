@@ -33,6 +33,10 @@ constexpr int kMaxSubsteps = 6;
 constexpr double kTurningMotion = 0.05;
 constexpr double kRounding = 1e-6, kTurningLoss = 1e-3;
 constexpr int kMaxTurns = 3;
+// Friction is found again until its wrench changes by no more than this, N and
+// N·m, or so often: at first by tangents, then by secants.
+constexpr double kFrictionChange = 1e-7;
+constexpr int kTangentRounds = 5, kMaxFrictionRounds = 12;
 
 void RequireFinite(const ToolState& state, const PoseVector& q_WH,
                    const Vec6& V_WH, const Vec6& F_applied) {
@@ -73,6 +77,10 @@ ConstraintStepper::ConstraintStepper(
       V_WO_(objects.size(), Vec6::Zero()) {
   if (settings_.skin.size() != objects.size()) {
     throw std::invalid_argument("there must be a skin for each object");
+  }
+  if (settings_.friction.is_any() &&
+      num_anchors() != RowFriction::kAnchorSize * num_objects()) {
+    throw std::invalid_argument("there must be a coefficient for each object");
   }
   for (const double skin : settings_.skin) RequirePositive(skin, "skin_m");
   RequirePositive(settings_.period, "period_s");
@@ -200,6 +208,51 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
   return is_any;
 }
 
+// The rows as friction sees them; what they push with is left open.
+void ConstraintStepper::WriteRubbing(const Pose& X_WT) {
+  rubbing_.clear();
+  for (const ConstraintRow& row : rows_.rows()) {
+    const int object = rows_.planes()[row.plane].object;
+    const Vec3 p_WC = (row.p_WCa + row.p_WCb) / 2;
+    rubbing_.push_back(
+        {object, row.n, p_WC - X_WT.p, ObjectMotionAt(object, p_WC), 0});
+  }
+}
+
+// Solves the problem of the springs, with friction by the normal forces of the
+// last solution, until that is what they say.
+ConstraintSolution ConstraintStepper::Solve(const Pose& X_WT, const Vec6& start,
+                                            ConstraintStepResult* result) {
+  ConstraintSolution solution =
+      SolveConstraintProblem(problem_, start, &workspace_);
+  result->num_iterations += solution.num_iterations;
+  if (!settings_.friction.is_any()) return solution;
+  WriteRubbing(X_WT);
+  const Mat6 H = problem_.H;
+  const Vec6 r = problem_.r;
+  WrenchModel& applied = result->friction.tool;
+  applied = {};
+  for (int round = 0; round < kMaxFrictionRounds; ++round) {
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      rubbing_[k].normal_force = held_[k].Force(problem_, solution.motion);
+    }
+    const Vec6 motion = whole_ + solution.motion;
+    const WrenchModel friction =
+        settings_.friction.Linearize(rubbing_, motion, round >= kTangentRounds);
+    const Vec6 change =
+        friction.F - applied.F - (friction.K - applied.K) * motion;
+    applied = friction;
+    if (change.cwiseAbs().maxCoeff() <= kFrictionChange) break;
+    problem_.H = H + friction.K;
+    problem_.r = r + friction.F - friction.K * whole_;
+    solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
+    result->num_iterations += solution.num_iterations;
+  }
+  problem_.H = H;
+  problem_.r = r;
+  return solution;
+}
+
 ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
                                                 const Vec6& coasting,
                                                 const Vec6& start,
@@ -207,23 +260,20 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
                                                 Follower* follower) {
   is_turned_.assign(rows_.planes().size(), 0);
   WriteSprings();
-  const ConstraintSolution first =
-      SolveConstraintProblem(problem_, start, &workspace_);
-  result->num_iterations += first.num_iterations;
+  const ConstraintSolution first = Solve(X_WT, start, result);
   if (follower != nullptr) follower->Solve(first.motion);
   ConstraintSolution solution = first;
   for (int turns = 0; turns < kMaxTurns; ++turns) {
     if (!TurnPlanes(X_WT, coasting, solution.motion, follower)) break;
     rows_.UpdateRows();
     WriteSprings();
-    solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
-    result->num_iterations += solution.num_iterations;
+    solution = Solve(X_WT, solution.motion, result);
     // What a plane proves holds for translations.
     if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
       rows_.RestorePlanes();
       WriteSprings();
       if (follower != nullptr) follower->Restore(first.motion);
-      return first;
+      return Solve(X_WT, first.motion, result);
     }
     if (follower != nullptr) follower->Solve(solution.motion);
   }
@@ -232,8 +282,10 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
 
 void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
                              const Vec6& V_WH, const Vec6& F_applied,
+                             const std::vector<double>& anchors,
                              ConstraintStepResult* result) {
   RequireFinite(state, q_WH, V_WH, F_applied);
+  settings_.friction.Begin(anchors);
   try {
     StepFrom(state, q_WH, V_WH, F_applied, result);
   } catch (...) {
@@ -257,7 +309,7 @@ void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
   problem_.r =
       M * state.V_WT / h + B * state.V_WT + coupling.tool.F + F_applied - b;
   const Vec6 force = problem_.r;
-  Vec6 whole = Vec6::Zero();
+  whole_.setZero();
   PoseVector q = state.q_WT;
   result->num_iterations = 0;
   result->is_bounded = false;
@@ -271,7 +323,7 @@ void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
       result->is_apart = result->least_distance > 0;
     }
     const ConstraintSolution solution =
-        SolveHere(X_WT, h * state.V_WT - whole, free, result, follower);
+        SolveHere(X_WT, h * state.V_WT - whole_, free, result, follower);
     result->is_bounded |= solution.is_bounded;
     Vec6 motion = solution.motion;
     const double distance = rows_.MotionOf(X_WT, motion);
@@ -281,27 +333,30 @@ void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
     motion *= share;
     if (follower != nullptr) follower->Go(share);
     q = Displaced<double>(q, motion);
-    whole += motion;
+    whole_ += motion;
     if (!is_far || substep == kMaxSubsteps) {
       result->is_bounded |= is_far;
       result->hessian = solution.hessian;
-      const Mat6 of_rows = solution.hessian - problem_.H;
+      const Mat6 of_rows =
+          solution.hessian - problem_.H - result->friction.tool.K;
       result->contact_stiffness = (of_rows + of_rows.transpose()) / 2;
       result->num_rows = static_cast<int>(rows_.rows().size());
       result->num_substeps = substep;
       WriteContacts(X_WT, solution.motion, result);
       break;
     }
-    problem_.r = force - problem_.H * whole;
+    problem_.r = force - problem_.H * whole_;
   }
   result->next.q_WT = q;
-  result->next.V_WT = whole / h;
+  result->next.V_WT = whole_ / h;
 }
 
 void ConstraintStepper::WriteContacts(const Pose& X_WT, const Vec6& motion,
                                       ConstraintStepResult* result) const {
   result->contacts.contacts.clear();
   result->force.clear();
+  result->friction.f_cluster_W.clear();
+  result->friction.sliding.clear();
   result->F_Oo_W.assign(static_cast<std::size_t>(num_objects()), Vec6::Zero());
   for (std::size_t k = 0; k < held_.size(); ++k) {
     const double force = held_[k].Force(problem_, motion);
@@ -320,10 +375,18 @@ void ConstraintStepper::WriteContacts(const Pose& X_WT, const Vec6& motion,
     result->contacts.contacts.push_back(contact);
     result->force.push_back(force);
     const Vec3 f = -force * row.n;
+    const Vec3& p_WOo = rows_.X_WO(plane.object).p;
     Vec6& F_Oo_W = result->F_Oo_W[plane.object];
-    F_Oo_W.head<3>() += (row.p_WCb - rows_.X_WO(plane.object).p).cross(f);
+    F_Oo_W.head<3>() += (row.p_WCb - p_WOo).cross(f);
     F_Oo_W.tail<3>() += f;
+    if (!settings_.friction.is_any()) continue;
+    const Vec3& f_t = settings_.friction.force(k);
+    result->friction.f_cluster_W.push_back(f_t);
+    result->friction.sliding.push_back(settings_.friction.slides(k) ? 1 : 0);
+    F_Oo_W.head<3>() -= (contact.p_WC - p_WOo).cross(f_t);
+    F_Oo_W.tail<3>() -= f_t;
   }
+  settings_.friction.End(rubbing_, settings_.period, V_WO_, &result->friction);
 }
 
 void ConstraintStepper::Reset() { rows_.Reset(); }

@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "constraint/constraint_problem.h"
 #include "constraint/constraint_rows.h"
+#include "constraint/row_friction.h"
 #include "constraint/step_gradient.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
@@ -23,10 +24,13 @@ struct ConstraintStepResult {
   /// pushes with, N.
   ContactSet contacts;
   std::vector<double> force;
+  /// Of the contacts, in place of clusters; without friction that is nothing.
+  FrictionStep friction;
   /// On each object at the origin of its frame, in W: [torque; force].
   std::vector<Vec6> F_Oo_W;
   /// Slope of the step's forces by the tool's motion [rad; m] in the tick,
-  /// A = M/h² + B/h + K + Σ k a aᵀ over the rows that push. What adds dF to the
+  /// A = M/h² + B/h + K + Σ k a aᵀ over the rows that push, and the slope of
+  /// friction. What adds dF to the
   /// wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
   Mat6 hessian = Mat6::Zero();
   /// The part of it that is of the rows, Σ k a aᵀ.
@@ -80,12 +84,13 @@ class ConstraintStepper {
     PoseVector q_HT;           ///< the tool in the handle
     double period = 0;         ///< h, s
     std::vector<double> skin;  ///< δ of each object, m
+    RowFriction friction;      ///< on each object, or none at all
   };
 
   /// The objects rest at the identity pose until they are posed.
   /// @throws std::invalid_argument if a decomposition is missing, if there is
-  ///         not one skin for each object, or if a skin or the period is not
-  ///         finite and above zero.
+  ///         not one skin or friction for each object, or if a skin or the
+  ///         period is not finite and above zero.
   ConstraintStepper(std::shared_ptr<const Decomposition> tool,
                     std::vector<std::shared_ptr<const Decomposition>> objects,
                     Settings settings);
@@ -102,11 +107,16 @@ class ConstraintStepper {
 
   /// Advances the tool by a tick.
   /// @param F_applied other wrenches on the tool at To in W, weight among them.
-  /// @throws std::invalid_argument for values that are not finite, before any
-  ///         remembered state is touched.
+  /// @param anchors of friction at the tick's beginning, num_anchors() numbers;
+  ///     zeros where nothing has been touched.
+  /// @throws std::invalid_argument for values that are not finite or another
+  ///         number of anchors, before any remembered state is touched.
   ///         std::bad_alloc, after which nothing is remembered.
   void Step(const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
-            const Vec6& F_applied, ConstraintStepResult* result);
+            const Vec6& F_applied, const std::vector<double>& anchors,
+            ConstraintStepResult* result);
+
+  int num_anchors() const { return settings_.friction.state_size(); }
 
   /// The same with derivatives, the objects posed as the tick says
   /// (step_gradient.h).
@@ -151,6 +161,9 @@ class ConstraintStepper {
   bool AreTurnedPiecesApart(const Pose& X_next) const;
   bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion,
                   Follower* follower);
+  ConstraintSolution Solve(const Pose& X_WT, const Vec6& start,
+                           ConstraintStepResult* result);
+  void WriteRubbing(const Pose& X_WT);
   ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& coasting,
                                const Vec6& start, ConstraintStepResult* result,
                                Follower* follower);
@@ -166,6 +179,8 @@ class ConstraintStepper {
   // Of each plane: whether a row of it pushes, and whether it has been turned.
   std::vector<std::uint8_t> pushes_, is_turned_;
   ConstraintWorkspace workspace_;
+  Vec6 whole_ = Vec6::Zero();  // motion of the tick so far
+  std::vector<RubbingRow> rubbing_;
 };
 
 }  // namespace drake_haptics

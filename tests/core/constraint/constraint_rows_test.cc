@@ -214,7 +214,7 @@ void AWarmTickAllocatesNothing() {
       PoseVector q_WH = state.q_WT;
       q_WH.head<4>() << 1, 0, 0, 0;
       q_WH.tail<3>() << 0.02 * std::sin(0.01 * k), 0, 0.12 - 1e-4 * k;
-      stepper.Step(state, q_WH, Vec6::Zero(), Vec6::Zero(), &result);
+      stepper.Step(state, q_WH, Vec6::Zero(), Vec6::Zero(), {}, &result);
       state = result.next;
       num_contacts += static_cast<int>(result.contacts.contacts.size());
     }
@@ -238,8 +238,8 @@ void ACopyGoesOnAsTheFirst() {
     PoseVector q_WH;
     q_WH << 1, 0, 0, 0, 0, 0, 0.1 - 1e-4 * k;
     ConstraintStepper copy = stepper;
-    copy.Step(state, q_WH, Vec6::Zero(), Vec6::Zero(), &copied);
-    stepper.Step(state, q_WH, Vec6::Zero(), Vec6::Zero(), &result);
+    copy.Step(state, q_WH, Vec6::Zero(), Vec6::Zero(), {}, &copied);
+    stepper.Step(state, q_WH, Vec6::Zero(), Vec6::Zero(), {}, &result);
     CHECK(copied.next.q_WT == result.next.q_WT);
     CHECK(copied.next.V_WT == result.next.V_WT);
     state = result.next;

@@ -342,3 +342,42 @@ def test_all_outputs_have_the_derivatives_of_doubles():
 def test_impossible_arguments_are_refused(changes, words):
     with pytest.raises(ValueError, match=words):
         make_step(**changes)
+
+
+def test_with_friction_it_says_that_it_has_no_derivatives():
+    step, _, context = rest_pressed(make_step(coefficient=[0.3]))
+    with pytest.raises(ValueError, match=r"no derivatives.*effects\.friction"):
+        linearize_sampled(step, context)
+    with pytest.raises(ValueError, match=r"no derivatives.*effects\.friction"):
+        step.ToAutoDiffXd()
+
+
+def test_friction_holds_the_tool_and_the_plate_feels_it():
+    side = RigidTransform([1e-4, 0.0, AT_REST - PRESS])
+    step = make_step(X_WO=None, coefficient=[0.5])
+    simulator = simulate(
+        step,
+        PRESSED,
+        X_WO_plate=pose_to_vector(RigidTransform()),
+        V_WO_plate=np.zeros(6),
+    )
+    advance(simulator, 400)
+    step.GetInputPort("X_WH").FixValue(
+        simulator.get_mutable_context(), pose_to_vector(side)
+    )
+    context = advance(simulator, 400)
+    friction = read(step, context, "friction_force")
+    f = friction.f_cluster_W.sum(axis=0)
+    model = read(step, context, "friction_model")
+    K = model[6:42].reshape(6, 6)
+    # By the load of now, or what is left of that of the first touch.
+    least = 0.5 * 800.0 * PRESS / 1e-4
+    assert 0.999 * least <= K[3, 3] <= 2.001 * least
+    # The coupling's spring and that of friction, one after another.
+    np.testing.assert_allclose(f, [-1e-4 / (1 / 800 + 1 / K[3, 3]), 0, 0], atol=1e-4)
+    assert not friction.sliding.any()
+    F_T, F_O = read(step, context, "F_To_W"), read(step, context, "F_O_W")
+    np.testing.assert_allclose(F_O[3:], -F_T[3:] - f, atol=1e-9)
+    np.testing.assert_allclose(model[3:6], f, atol=1e-5)
+    # The contact's slope has nothing of it.
+    assert abs(read(step, context, "wrench_model")[6:42].reshape(6, 6)[3, 3]) < 1.0
