@@ -9,6 +9,7 @@ import numpy as np
 from pydrake.common.eigen_geometry import Quaternion
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -27,7 +28,7 @@ from drake_haptics._core import (
     CouplingGains,
     RigidToolDynamics,
 )
-from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import export_parts
 from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
@@ -130,6 +131,7 @@ class ConstraintToolStep(Diagram):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str] = (),
+        plant: MultibodyPlant | None = None,
     ):
         """Constructs the system.
 
@@ -143,6 +145,8 @@ class ConstraintToolStep(Diagram):
             X_WT: Default pose; the tool starts at rest.
             period_s: The tick, s.
             wrench_names: A name for each input of another wrench.
+            plant: One with a body that is the handle: `Simulator.Initialize` puts the
+                tool there, and its update sees the plant as the plant's own does.
 
         Raises:
             ValueError: The period or a skin is not positive, there is not one for each
@@ -171,6 +175,7 @@ class ConstraintToolStep(Diagram):
                 X_WT,
                 period_s,
                 wrench_names,
+                plant,
             ),
         )
         step = self._step
@@ -243,6 +248,7 @@ class _ConstraintStep(LeafSystem):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str],
+        plant: MultibodyPlant | None,
     ):
         super().__init__()
         self._q_HT = pose_to_vector(X_HT)
@@ -322,7 +328,19 @@ class _ConstraintStep(LeafSystem):
             self._calc_wrench_model,
             from_all,
         )
-        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+        if plant is not None:
+            self.DeclareInitializationDiscreteUpdateEvent(self._start)
+        if plant is not None and plant.has_sampled_output_ports():
+            # As the plant's: a discrete update would come after it.
+            self.DeclarePeriodicUnrestrictedUpdateEvent(
+                period_s,
+                0.0,
+                lambda context, state: self._update(
+                    context, state.get_mutable_discrete_state()
+                ),
+            )
+        else:
+            self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
         stepper = ConstraintStepper(
@@ -369,6 +387,13 @@ class _ConstraintStep(LeafSystem):
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         result = self._eval_result(context)
         next_state.set_value(np.concatenate([result.q_WT, result.V_WT]))
+
+    def _start(self, context: Context, next_state: DiscreteValues) -> None:
+        X_WT = vector_to_pose(self._X_WH.Eval(context)) @ vector_to_pose(self._q_HT)
+        V_WH = self._V_WH.Eval(context)
+        arm = X_WT.translation() - self._X_WH.Eval(context)[4:]
+        V_WT = V_WH + np.concatenate([np.zeros(3), np.cross(V_WH[:3], arm)])
+        next_state.set_value(np.concatenate([pose_to_vector(X_WT), V_WT]))
 
     def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
         output.set_value(self._eval_result(context).F_Ho_W_commanded)
