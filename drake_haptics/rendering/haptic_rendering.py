@@ -78,8 +78,8 @@ class HapticRendering(Diagram):
     of the plant's state now: there is no sample of delay.
 
     By the penalty law, above `skin_speed_m_per_s` a step may carry the tool from beyond
-    the tolerance into a shape: it is met all the same, but as deep as the step has taken
-    it. Once a contact is deeper than ten tolerances there is a
+    the tolerance into a shape: it is met all the same, but as deep as the step has
+    taken it. Once a contact is deeper than ten tolerances there is a
     `drake_haptics.scene.validation.SceneWarning`, the first time only.
     """
 

@@ -88,10 +88,12 @@ def test_effects_beside_contact_are_kept():
     check_constraint_law(CONSTRAINT, effects, sheds_load=False)
 
 
-def test_a_plant_keeps_the_penalty_law():
-    check_rendering(ContactParameters(), {}, Effects(), None)
-    with pytest.raises(SceneError, match=r"contact\.law .* take penalty"):
-        check_rendering(CONSTRAINT, {}, Effects(), None)
+def test_a_plant_takes_either_law_with_what_it_has():
+    for contact in (ContactParameters(), CONSTRAINT):
+        check_rendering(contact, {}, Effects(), None)
+    slow = ContactParameters(law="constraint", query_rate_hz=500.0)
+    with pytest.raises(SceneError, match=r"query_rate_hz does nothing"):
+        check_rendering(slow, {}, Effects(), None)
 
 
 def test_each_object_can_have_its_skin():
