@@ -125,8 +125,8 @@ def test_a_tool_that_is_held_in_a_cup_rests_still(config, shape):
 def test_nothing_carries_a_body_through_a_thin_wall(config):
     """A cube at 1 m/s on a plate of 0.1 mm, a tenth of what it goes in a step.
 
-    The body sinks in until it is stopped. The proxy keeps what a fast turn leaves of its
-    skin: a row is of first order in rotations.
+    The body sinks in until it is stopped. The proxy keeps what a fast turn leaves of
+    its skin: a row is of first order in rotations.
     """
     scene = PlantScene(config)
     add_fixed(scene, "plate", Box(0.1, 0.1, 1e-4))

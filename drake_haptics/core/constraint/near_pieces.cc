@@ -1,6 +1,7 @@
 #include "constraint/near_pieces.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "pair/convex_pair.h"
@@ -25,11 +26,8 @@ void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
     watched_.push_back(
         {entered.pieces, entered.node, tick.odometer + entered.gap, {}});
   }
-  if (!entered_.empty()) {
-    std::sort(watched_.begin(), watched_.end(),
-              [](const auto& p, const auto& q) { return p.pieces < q.pieces; });
-  }
   mark_ = kNever;
+  const auto first = static_cast<std::ptrdiff_t>(planes->size());
   auto kept = watched_.begin();
   for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
     PairContact contact;
@@ -53,6 +51,8 @@ void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
     ++kept;
   }
   watched_.erase(kept, watched_.end());
+  std::sort(planes->begin() + first, planes->end(),
+            [](const auto& p, const auto& q) { return p.pieces < q.pieces; });
   mark_ = std::min(mark_, front_.mark());
 }
 

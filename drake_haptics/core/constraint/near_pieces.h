@@ -84,7 +84,7 @@ class NearPieces {
 
   TreedShape shape_;
   BvttFront front_;
-  std::vector<WatchedPair> watched_;  // sorted by pieces
+  std::vector<WatchedPair> watched_;  // as they entered
   std::vector<EnteredPair> entered_;
   double mark_ = 0;
 };
