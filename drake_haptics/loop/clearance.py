@@ -19,6 +19,10 @@ from drake_haptics.scene.schema import ContactParameters, HandPathParameters, Sc
 
 # So many places of the hand's path are looked at.
 _PLACES = 100
+# So often a tool is led out of what it is pressed into.
+_MOVES = 3
+# What a move costs, by its length, against the share that it wins.
+_WAY, _ROUNDING = 1e-5, 1e-6
 
 
 @dataclass(frozen=True)
@@ -51,11 +55,13 @@ def find_clearance(
     tool out on one side, as the floor, a corner or a cone does, leaves s as large as
     one likes.
 
+    Where the tool overlaps an object it will not be. Where it does so in all tight
+    places, because a hand presses it, the same program leads it out to places beside.
+
     Args:
         tool: Its pieces, in its frame T.
         objects: Pieces of each object and its pose X_WO.
-        poses: Poses X_WT to look at; those in which the tool touches an object are
-            left out: there it will not be.
+        poses: Poses X_WT to look at.
         kept_m: The distance that the tool should be able to keep from each object, m.
     """
     # Two walls that leave less than that on each side are nearer than twice as much,
@@ -65,16 +71,35 @@ def find_clearance(
     for i, (_, X_WO) in enumerate(objects):
         tracker.set_object_pose(i, pose_to_vector(X_WO))
     size_m = float(np.linalg.norm(np.ptp(tool.vertices, axis=0)))
-    least: Clearance | None = None
-    for X_WT in poses:
+    pressed: list[NDArray[np.float64]] = []
+
+    def ask(q_WT: NDArray[np.float64]) -> tuple[NDArray[np.float64], Clearance | None]:
         tracker.reset()
-        contacts = tracker.query(pose_to_vector(X_WT))
-        if contacts.least_distance <= 0.0:
-            continue
-        found = _find_room(contacts, size_m, kept[contacts.object_index])
-        if found is not None and (least is None or found.share < least.share):
-            least = found
-    return least
+        contacts = tracker.query(q_WT)
+        x_W, found = _find_room(contacts, size_m, kept[contacts.object_index])
+        if contacts.least_distance > 0.0:
+            return np.zeros(3), found
+        return x_W, None
+
+    found = []
+    for X_WT in poses:
+        q_WT = pose_to_vector(X_WT)
+        x_W, room = ask(q_WT)
+        found.append(room)
+        if np.any(x_W):
+            pressed.append(q_WT + np.concatenate([np.zeros(4), x_W]))
+    rooms = [room for room in found if room is not None]
+    if not rooms:
+        # As it is turned there, the tool may have less room than as it will turn.
+        for q_WT in pressed:
+            for _ in range(_MOVES):
+                x_W, room = ask(q_WT)
+                if not np.any(x_W):
+                    break
+                q_WT[4:] += x_W
+            if room is not None:
+                rooms.append(room)
+    return min(rooms, key=lambda room: room.share, default=None)
 
 
 def sample_path(parameters: HandPathParameters) -> list[RigidTransform]:
@@ -117,26 +142,32 @@ def round_down(value: float) -> float:
 
 def _find_room(
     contacts: _core.ContactSet, size_m: float, kept_m: NDArray[np.float64]
-) -> Clearance | None:
-    """Returns the clearance among contacts if it is less than `kept_m` of each."""
+) -> tuple[NDArray[np.float64], Clearance | None]:
+    """Returns the shortest move that keeps all contacts away by what they should be.
+
+    Where there is none, it keeps as much as can be, and the clearance is told.
+    """
     n_W, d = contacts.nhat_BA_W, contacts.distance
+    stay = np.zeros(3)
     if len(d) < 2 or _can_leave(n_W, d, size_m, kept_m):
-        return None
-    distance_m = kept_m.max()
+        return stay, None
+    distance_m = float(kept_m.max())
     from scipy.optimize import linprog
 
-    # Of (x, s) as shares of the distance, so that all numbers are near 1.
+    # Of (x, -x, s) as shares of the distance, so that all numbers are near 1.
     solved = linprog(
-        [0.0, 0.0, 0.0, -1.0],
-        A_ub=np.column_stack([-n_W, kept_m / distance_m]),
+        [_WAY] * 6 + [-1.0],
+        A_ub=np.column_stack([-n_W, n_W, kept_m / distance_m]),
         b_ub=d / distance_m,
-        bounds=[(-size_m / distance_m, size_m / distance_m)] * 3 + [(None, None)],
+        bounds=[(0.0, size_m / distance_m)] * 6 + [(None, 1.0)],
     )
-    share = -float(solved.fun)
-    if share >= 1.0:
-        return None
+    x_W = distance_m * (solved.x[:3] - solved.x[3:6])
+    share = float(solved.x[6])
+    if share >= 1.0 - _ROUNDING:
+        return x_W, None
     holding = solved.ineqlin.marginals < 0
-    return Clearance(share, tuple(sorted(set(contacts.object_index[holding].tolist()))))
+    objects = tuple(sorted(set(contacts.object_index[holding].tolist())))
+    return x_W, Clearance(share, objects)
 
 
 def _can_leave(
@@ -145,7 +176,7 @@ def _can_leave(
     size_m: float,
     kept_m: NDArray[np.float64],
 ) -> bool:
-    """Whether a move along the mean normal leads away from all surfaces."""
+    """Whether a move along the mean normal leads the tool away from all surfaces."""
     way = n_W.mean(axis=0)
     length = float(np.linalg.norm(way))
     if length < np.finfo(float).eps:

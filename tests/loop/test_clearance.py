@@ -14,6 +14,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics import make_simulator
 from drake_haptics.authoring.plausibility import check_plausibility
+from drake_haptics.evaluation.shapes.solids import SOCKET_PLAY_M
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.loop.builder import BuildHapticDiagram
@@ -67,14 +68,17 @@ def ask(tool, body, distance_m, *p, X_WO=None) -> Clearance | None:
 @pytest.mark.parametrize("shift", [(0, 0), (0.9, 0), (-0.5, 0.8)])
 @pytest.mark.parametrize("lift_m", [0.0, 0.012])
 def test_half_the_play_of_a_square_peg_is_found(shift, lift_m) -> None:
-    """In the middle and beside it; where the peg is in a wall it cannot be."""
+    """In the middle and beside it; and in a wall."""
     peg, plate = pieces(make_peg()), pieces(make_plate())
     p = [PLAY_M * shift[0], PLAY_M * shift[1], lift_m]
     found = ask(peg, plate, 1.5 * PLAY_M, p)
     assert found is not None and found.objects == (0,)
     assert found.share * 1.5 * PLAY_M == pytest.approx(PLAY_M, rel=1e-6)
     assert ask(peg, plate, 0.99 * PLAY_M, p) is None
-    assert ask(peg, plate, 1.5 * PLAY_M, [1.1 * PLAY_M, 0, lift_m]) is None
+    # From within a wall it is led there.
+    found = ask(peg, plate, 1.5 * PLAY_M, [1.1 * PLAY_M, 0, lift_m])
+    assert found is not None
+    assert found.share * 1.5 * PLAY_M == pytest.approx(PLAY_M, rel=1e-6)
 
 
 def test_half_the_play_of_a_round_peg_is_found() -> None:
@@ -248,3 +252,24 @@ def test_the_default_skin_is_never_more_than_the_play(
     X_WT = haptic.loop.outputs["X_WT"]
     context = X_WT.get_system().GetMyContextFromRoot(simulator.get_context())
     assert X_WT.Eval(context)[6] < 1e-3
+
+
+def test_a_tool_that_is_pressed_into_a_wall_is_asked_beside_it() -> None:
+    """Through the wall of its hole, and through the floor of a blind one."""
+    peg, plate = pieces(make_peg()), pieces(make_plate())
+    floor = pieces(trimesh.creation.box([0.03, 0.03, 0.01]))
+    objects = [(plate, RigidTransform()), (floor, RigidTransform([0, 0, -0.01]))]
+    for p in ([0.002, 0, 0.012], [0, 0, 0.008], [0.001, -0.001, 0.009]):
+        found = find_clearance(peg, objects, [RigidTransform(p)], [1e-3] * 2)
+        assert found is not None and 0 in found.objects
+        assert found.share * 1e-3 == pytest.approx(PLAY_M, rel=1e-3)
+
+
+def test_the_play_of_the_shipped_peg_is_found() -> None:
+    """Its hand presses it against the floor, and askew."""
+    scene = load_scene(find_scene("peg_in_hole"))
+    scene.contact.skin_m = None
+    haptic = BuildHapticDiagram(scene)
+    objects = [(haptic.environment[0].core, RigidTransform())]
+    fitted = fit_skin(scene, haptic.tool.core, objects).skin_m
+    assert fitted is not None and 0.9 * SOCKET_PLAY_M < fitted <= SOCKET_PLAY_M
