@@ -1,4 +1,4 @@
-"""An object that is put into the tool: it is found, said, and led out without a kick."""
+"""An object that is put into the tool is found, said, and led out without a kick."""
 
 from __future__ import annotations
 
