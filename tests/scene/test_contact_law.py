@@ -35,7 +35,7 @@ OF_PENALTY = {
 def test_a_scene_is_by_the_penalty_law_unless_it_says_otherwise():
     assert ContactParameters().law == "penalty"
     laws = {name: load_scene(path).contact.law for name, path in list_scenes().items()}
-    assert laws.pop("peg_in_hole") == "constraint"
+    assert laws.pop("peg_in_hole") == laws.pop("nut_on_bolt") == "constraint"
     assert set(laws.values()) == {"penalty"}
 
 
