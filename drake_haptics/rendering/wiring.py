@@ -34,6 +34,7 @@ class RenderingWiring:
     Attributes:
         builder: Builder of its diagram.
         outputs: What it will export, by name.
+        proxy_gains: What draws the tool to its proxy; None by the penalty law.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class RenderingWiring:
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
         self._asked: OutputPort | None = None
+        self.proxy_gains: _core.CouplingGains | None = None
         self._contact_stiffness: Sequence[float] = []
         self._springs: list[tuple[float, float]] = []
         motions = self.builder.AddNamedSystem(
@@ -70,12 +72,6 @@ class RenderingWiring:
         for port in map(motions.get_input_port, range(motions.num_input_ports())):
             self.builder.ExportInput(port, port.get_name())
         self.outputs = _name_outputs(motions)
-
-    @property
-    def proxy_gains(self) -> _core.CouplingGains | None:
-        """What draws the tool to its proxy, if there is one."""
-        proxy = self._proxy
-        return proxy and proxy.get_gains(proxy.CreateDefaultContext())
 
     @property
     def sources(self) -> dict[str, OutputPort]:
@@ -139,6 +135,8 @@ class RenderingWiring:
         )
         self.builder.AddNamedSystem("constraint_tool_step", proxy)
         self._proxy = proxy
+        self.proxy_gains = proxy.get_gains(proxy.CreateDefaultContext())
+        self._contact_stiffness = [self.proxy_gains.stiffness_N_per_m]
         for source, port in {
             body.GetOutputPort("X_WT_next"): proxy.GetInputPort("X_WH"),
             self.outputs["V_WT"]: proxy.GetInputPort("V_WH"),
