@@ -40,6 +40,7 @@ from .output.haptic_visualizer import HapticVisualizer as HapticVisualizer
 from .output.tick_log_sink import TickLogSink as TickLogSink
 from .plant.applied_wrenches import AppliedWrenches as AppliedWrenches
 from .plant.body_motions import BodyMotions as BodyMotions
+from .plant.body_of_proxy import BodyOfProxy as BodyOfProxy
 from .tool.constraint_tool_step import ConstraintToolStep as ConstraintToolStep
 from .tool.constraint_tool_step import ConstraintWrench as ConstraintWrench
 from .tool.handle_model import HandleModel as HandleModel

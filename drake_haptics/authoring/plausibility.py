@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 from pydrake.math import RigidTransform
 
-from drake_haptics.authoring.clearance import find_clearance
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.checks import (
@@ -24,6 +22,13 @@ from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.topology import winding_numbers
 from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
 from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.clearance import (
+    find_clearance,
+    fit_skin,
+    round_down,
+    sample_path,
+)
+from drake_haptics.loop.contact import find_skins
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.contact_law import calc_first_touch, is_constraint
@@ -33,8 +38,7 @@ from drake_haptics.systems.contact.contact_query import ContactObject, ContactQu
 
 # A tool is held in one hand.
 _LARGEST_USUAL_TOOL_M = 1.0
-# So many places of the hand's path, and vertices of the tool, are looked at.
-_PLACES = 100
+# So many vertices of the tool are looked at.
 _VERTICES = 16
 
 
@@ -94,25 +98,37 @@ def _question_clearance(haptic: HapticDiagram) -> list[str]:
 
     Its way is that of the scene's hand, with a device of your own as well.
     """
-    scene = haptic.scene
-    key = "skin_m" if scene.contact.law == "constraint" else "tolerance_m"
-    kept_m: float = getattr(scene.contact, key)
+    scene, tool = haptic.scene, haptic.tool.core
     objects = [
         (part.core, item.pose.to_rigid_transform())
         for item, part in zip(scene.environment, haptic.environment, strict=True)
     ]
-    found = find_clearance(haptic.tool.core, objects, _sample_path(haptic), kept_m)
+    materials = [item.material for item in scene.environment]
+    keys = ["contact.tolerance_m"] * len(objects)
+    kept_m = [scene.contact.tolerance_m] * len(objects)
+    if is_constraint(scene.contact):
+        kept_m = find_skins(fit_skin(scene, tool, objects), materials)
+        keys = [
+            "contact.skin_m"
+            if material.skin_m is None
+            else f"environment[{i}].material.skin_m"
+            for i, material in enumerate(materials)
+        ]
+    found = find_clearance(tool, objects, sample_path(scene.hand.path), kept_m)
     if found is None:
         return []
     names = " and ".join(f"'{scene.environment[i].name}'" for i in found.objects)
-    # Two digits, the second not rounded up.
-    digit_m = 10.0 ** (math.floor(math.log10(found.distance_m)) - 1)
-    fits_m = digit_m * math.floor(found.distance_m / digit_m)
+    wide = dict.fromkeys((keys[i], kept_m[i]) for i in found.objects)
+    are = " and ".join(f"{key}: is {length(kept)}" for key, kept in wide)
+    left = " and ".join(length(found.share * kept) for _, kept in wide)
+    fits = ", ".join(
+        f"{key}: {round_down(found.share * kept):.2g}" for key, kept in wide
+    )
     return [
-        f"contact.{key}: is {length(kept_m)}, but on the hand's path {names}"
+        f"{are}, but on the hand's path {names}"
         f" {'leaves' if len(found.objects) == 1 else 'leave'} the tool"
-        f" {length(found.distance_m)} on each side: it is pushed from all sides at once"
-        f" and may not go in; contact.{key}: {fits_m:.2g} fits"
+        f" {left} on each side: it is pushed from all sides at once"
+        f" and may not go in; {fits} fits"
     ]
 
 
@@ -162,14 +178,8 @@ def _question_reach(haptic: HapticDiagram) -> list[str]:
 
 def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
     """Returns corners of the tool's box along the hand's path, (n, 8, 3), m."""
-    return np.array([_find_corners(haptic.tool, X) for X in _sample_path(haptic)])
-
-
-def _sample_path(haptic: HapticDiagram) -> list[RigidTransform]:
-    """Returns poses X_WT along the hand's path."""
-    path = make_hand_path(haptic.scene.hand.path)
-    times = np.linspace(0.0, path.duration_s, _PLACES)
-    return [vector_to_pose(path.calc(t)[0]) for t in times]
+    places = sample_path(haptic.scene.hand.path)
+    return np.array([_find_corners(haptic.tool, X_WT) for X_WT in places])
 
 
 def _find_corners(tool: Decomposition, X_WT: RigidTransform) -> np.ndarray:

@@ -20,6 +20,7 @@ from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+from drake_haptics.loop.clearance import fit_skin
 from drake_haptics.loop.device_placement import (
     make_haptic_device,
     place_device,
@@ -180,7 +181,14 @@ def BuildHapticDiagram(
         tool=tool.core,
         tool_dynamics=make_tool_dynamics(tool.mesh, scene.tool.mass_kg),
         objects=objects,
-        contact=scene.contact,
+        contact=fit_skin(
+            scene,
+            tool.core,
+            [
+                (part.core, item.pose.to_rigid_transform())
+                for item, part in zip(scene.environment, environment, strict=True)
+            ],
+        ),
         coupling=scene.coupling,
         X_HT=X_HT,
         X_WT=X_WT,

@@ -10,7 +10,7 @@ import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
-from drake_haptics.scene.contact_law import is_constraint
+from drake_haptics.scene.contact_law import LARGEST_DEFAULT_SKIN_M, is_constraint
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.scene.validation import check_query_rate
 from drake_haptics.systems.contact.contact_clustering import (
@@ -211,9 +211,12 @@ def find_contact_gains(
 def find_skins(
     contact: ContactParameters, materials: Sequence[Material]
 ) -> list[float]:
-    """Returns the skin (m) of each object: its material's, or else the contact's."""
-    skins = [material.skin_m for material in materials]
-    return [contact.skin_m if skin is None else skin for skin in skins]
+    """Returns the skin (m) of each object: its material's, or else the contact's.
+
+    Of a contact that does not say it is `LARGEST_DEFAULT_SKIN_M`.
+    """
+    skin_m = contact.skin_m or LARGEST_DEFAULT_SKIN_M
+    return [material.skin_m or skin_m for material in materials]
 
 
 def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:

@@ -27,6 +27,8 @@ from drake_haptics.rendering.checks import (
     question_rendered_sizes,
 )
 from drake_haptics.rendering.haptic_rendering import HapticRendering
+from drake_haptics.rendering.proxy import check_handle
+from drake_haptics.scene.contact_law import calc_first_touch
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
@@ -71,6 +73,10 @@ def AddHapticRendering(
     own contact between the tool and the environment, in every Context made from then
     on. Between all other bodies it acts as before.
 
+    With `contact.law: constraint`, contact stops a light proxy in the body's place, and
+    what acts on the proxy acts on the body. The spring between the two is as stiff as
+    the plant's step bears (`HapticRendering.proxy_gains`).
+
     With a coupling, a spring and damper draw the tool to a handle. The handle is that
     of `device`, which goes inside; or, without one, is given by the inputs `X_WH` and
     `V_WH` of the result, which shows its wrench at the output `F_Ho_W_commanded`.
@@ -86,7 +92,7 @@ def AddHapticRendering(
         role: Which shapes are used: those for proximity or for illustration.
         chord_error_m: Largest distance of polytopes from the round shapes that they
             stand for, m.
-        contact: Tolerance, clustering and gains.
+        contact: The law of contact and its parameters.
         materials: Of bodies of the environment, by the names of their ports; what one
             does not give is that of `contact` and `effects`.
         effects: Effects besides contact. Gravity is the plant's own; passivity
@@ -147,6 +153,7 @@ def AddHapticRendering(
         raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
     contact, effects = contact or ContactParameters(), effects or Effects()
     materials = materials or {}
+    period_s = period_s or plant.time_step() or _DEFAULT_PERIOD_S
     check_rendering(contact, materials, effects, coupling)
     inspector = scene_graph.model_inspector()
     tool = find_body(plant, tool_body, "tool_body")
@@ -178,7 +185,7 @@ def AddHapticRendering(
         coupling=coupling,
         device=device,
         X_HT=X_HT or RigidTransform(),
-        period_s=period_s or plant.time_step() or _DEFAULT_PERIOD_S,
+        period_s=period_s,
     )
     builder.AddNamedSystem(name, rendering)
     builder.Connect(
@@ -194,13 +201,31 @@ def AddHapticRendering(
     touching = exclude_own_contact(plant, scene_graph, tool, bodies)
     for sentence in [
         *_describe_own_contact(tool, touching),
-        *question_rendered_sizes(rendered_tool, objects, contact.tolerance_m),
-        *check_rendering_stiffness(
-            plant, rendered_tool, objects, contact, ordered, coupling
+        *question_rendered_sizes(rendered_tool, objects, calc_first_touch(contact)),
+        *_check_stiffness(
+            rendering, contact, ordered, coupling, plant.time_step() or period_s
         ),
     ]:
         warnings.warn(sentence, SceneWarning, stacklevel=2)
     return rendering
+
+
+def _check_stiffness(
+    rendering: HapticRendering,
+    contact: ContactParameters,
+    materials: Sequence[Material],
+    coupling: CouplingParameters | None,
+    step_s: float,
+) -> list[str]:
+    """Returns a sentence for each gain that is too stiff for the plant's step."""
+    if rendering.proxy_gains is None:
+        plant = rendering.tool.body.GetParentPlant()
+        return check_rendering_stiffness(
+            plant, rendering.tool, rendering.objects, contact, materials, coupling
+        )
+    if coupling is None:
+        return []
+    return check_handle(coupling, rendering.proxy_gains, step_s)
 
 
 def _find_rendering(builder: DiagramBuilder, tool: RigidBody, body: RigidBody) -> str:

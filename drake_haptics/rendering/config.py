@@ -39,7 +39,7 @@ class HapticRenderingConfig:
         role: Which shapes are used, `proximity` or `illustration`.
         chord_error_m: Largest distance of polytopes from the round shapes that they
             stand for, m.
-        contact: Tolerance, clustering and gains.
+        contact: The law of contact and its parameters.
         materials: Materials of bodies of the environment, by the names of their ports.
         effects: What is felt besides contact.
         coupling: Gains between a handle and the tool. Defaults to no handle.

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram
 
+from drake_haptics._core import CouplingGains
 from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.rendering.bodies import RenderedBody
@@ -37,8 +38,10 @@ class HapticRendering(Diagram):
         - V_WT
         - X_WO_<name of each body that moves>
         - V_WO_<name of each body that moves>
+        - X_WP (by the constraint law)
+        - V_WP (by the constraint law)
         - contacts
-        - clusters
+        - clusters (by the penalty law)
         - contact_wrench
         - F_To_W
         - F_O_W (with bodies that move)
@@ -56,20 +59,27 @@ class HapticRendering(Diagram):
     * `X_WT` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
       frames in the world, m; `V_WT` and `V_WO_<name>` (6) their spatial velocities
       [ω; v] at the frame's origin in the world, rad/s and m/s.
+    * `X_WP` (7) and `V_WP` (6) are those of the proxy.
     * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
       `clusters` a `drake_haptics._core.ClusterSet`.
     * `F_To_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
       world, N·m and N, without coupling and effects; `F_O_W` (6 for each body that
       moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`.
+      By the constraint law all of them are the proxy's, as of `ConstraintToolStep`.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show on the handle at its origin in
       the world, N·m and N; `X_WH`, `V_WH`, `F_Ho_W_rendered` and `status` are those of
       `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
       `PassivityControl`.
 
-    The force is a function of the plant's state now: there is no sample of delay.
-    Above `skin_speed_m_per_s` a step may carry the tool from beyond the tolerance into
-    a shape: it is met all the same, but as deep as the step has taken it. Once a
-    contact is deeper than ten tolerances there is a
+    By the constraint law contact stops a light proxy in the body's place, and a handle
+    holds the proxy. The body sinks in by its load divided by the stiffness of
+    `proxy_gains`. `Simulator.Initialize` puts the proxy where the body is. In a
+    continuous plant what acts on the proxy is held for a tick. All else is a function
+    of the plant's state now: there is no sample of delay.
+
+    By the penalty law, above `skin_speed_m_per_s` a step may carry the tool from beyond
+    the tolerance into a shape: it is met all the same, but as deep as the step has
+    taken it. Once a contact is deeper than ten tolerances there is a
     `drake_haptics.scene.validation.SceneWarning`, the first time only.
     """
 
@@ -91,7 +101,7 @@ class HapticRendering(Diagram):
         Args:
             tool: The body that is moved.
             objects: Objects that the tool meets.
-            contact: Tolerance, clustering and gains.
+            contact: The law of contact and its parameters.
             materials: Of each object.
             effects: Effects besides contact.
             coupling: Gains between a handle and the tool; None for no handle.
@@ -115,6 +125,7 @@ class HapticRendering(Diagram):
             None if tool.body.GetParentPlant().time_step() else period_s,
         )
         wiring.add_contact(contact, effects, materials, period_s)
+        self._proxy_gains = wiring.proxy_gains
         if coupling is not None:
             wiring.add_coupling(make_coupling_gains(coupling, device), X_HT, device)
         wiring.add_effects(effects, materials, period_s)
@@ -127,7 +138,11 @@ class HapticRendering(Diagram):
 
     def __repr__(self) -> str:
         objects = ", ".join(one.name for one in self._objects)
-        return f"HapticRendering({self._tool.name!r} against {objects})"
+        how = ""
+        if self._proxy_gains is not None:
+            stiffness = self._proxy_gains.stiffness_N_per_m
+            how = f", drawn to a proxy with {stiffness:.3g} N/m"
+        return f"HapticRendering({self._tool.name!r} against {objects}{how})"
 
     @property
     def tool(self) -> RenderedBody:
@@ -138,6 +153,16 @@ class HapticRendering(Diagram):
     def objects(self) -> tuple[RenderedBody, ...]:
         """The objects that it meets, in the order of `ContactSet.object_index`."""
         return self._objects
+
+    @property
+    def proxy_gains(self) -> CouplingGains | None:
+        """What draws the body to its proxy; None by the penalty law.
+
+        As stiff as its step bears with a margin, by the body's inertia in the plant's
+        default positions and that of the lightest object:
+        `drake_haptics.rendering.proxy.calc_proxy_gains`.
+        """
+        return self._proxy_gains
 
     @property
     def skin_speed_m_per_s(self) -> float:

@@ -6,18 +6,22 @@ from collections.abc import Sequence
 
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
-from pydrake.systems.primitives import Demultiplexer, Multiplexer
+from pydrake.systems.primitives import Demultiplexer, Multiplexer, ZeroOrderHold
 
 from drake_haptics import _core
 from drake_haptics.loop.contact import add_contact_systems, find_contact_gains
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.rendering.bodies import RenderedBody
+from drake_haptics.rendering.proxy import make_proxy_step
+from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.friction_reaction import FrictionReaction
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.plant.applied_wrenches import AppliedWrenches
 from drake_haptics.systems.plant.body_motions import BodyMotions
+from drake_haptics.systems.plant.body_of_proxy import BodyOfProxy
+from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 # Effects that push the tool, each with a wrench model of its own.
@@ -30,6 +34,7 @@ class RenderingWiring:
     Attributes:
         builder: Builder of its diagram.
         outputs: What it will export, by name.
+        proxy_gains: What draws the tool to its proxy; None by the penalty law.
     """
 
     def __init__(
@@ -49,6 +54,8 @@ class RenderingWiring:
         self.builder = DiagramBuilder()
         self._tool = tool
         self._moving = {item.name: item.index for item in objects if item.X_WB is None}
+        self._rendered = tuple(objects)
+        self._proxy: ConstraintToolStep | None = None
         self._objects = [
             ContactObject(item.name, item.pieces, item.X_WB) for item in objects
         ]
@@ -56,6 +63,7 @@ class RenderingWiring:
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
         self._asked: OutputPort | None = None
+        self.proxy_gains: _core.CouplingGains | None = None
         self._contact_stiffness: Sequence[float] = []
         self._springs: list[tuple[float, float]] = []
         motions = self.builder.AddNamedSystem(
@@ -84,6 +92,9 @@ class RenderingWiring:
         period_s: float,
     ) -> None:
         """Adds what finds contacts and answers them."""
+        if is_constraint(contact):
+            self._add_proxy(contact, materials, period_s)
+            return
         found = add_contact_systems(
             self.builder,
             self._tool.pieces,
@@ -108,17 +119,79 @@ class RenderingWiring:
             self._on_objects["contact"] = force.GetOutputPort("F_O_W")
             self.outputs["F_O_W"] = self._on_objects["contact"]
 
+    def _add_proxy(
+        self,
+        contact: ContactParameters,
+        materials: Sequence[Material],
+        period_s: float,
+    ) -> None:
+        """Adds the proxy that contact stops, and what draws the body to it."""
+        step_s = self._tool.body.GetParentPlant().time_step()
+        body = self.builder.AddNamedSystem(
+            "body_of_proxy", BodyOfProxy(step_s or period_s)
+        )
+        proxy = make_proxy_step(
+            self._tool, self._rendered, contact, materials, step_s or period_s, "handle"
+        )
+        self.builder.AddNamedSystem("constraint_tool_step", proxy)
+        self._proxy = proxy
+        self.proxy_gains = proxy.get_gains(proxy.CreateDefaultContext())
+        self._contact_stiffness = [self.proxy_gains.stiffness_N_per_m]
+        for source, port in {
+            body.GetOutputPort("X_WT_next"): proxy.GetInputPort("X_WH"),
+            self.outputs["V_WT"]: proxy.GetInputPort("V_WH"),
+            proxy.GetOutputPort("X_WT"): body.GetInputPort("X_WP"),
+            proxy.GetOutputPort("F_To_W"): body.GetInputPort("F_Po_W"),
+        }.items():
+            self.builder.Connect(source, port)
+        self.outputs |= {
+            "X_WP": proxy.GetOutputPort("X_WT"),
+            "V_WP": proxy.GetOutputPort("V_WT"),
+            "contacts": proxy.GetOutputPort("contacts"),
+            "contact_wrench": proxy.GetOutputPort("contact_wrench"),
+            "F_To_W": proxy.GetOutputPort("F_To_W"),
+        }
+
+        def hold(wrench: OutputPort) -> OutputPort:
+            # A discrete plant does so itself.
+            if step_s:
+                return wrench
+            held = self.builder.AddNamedSystem(
+                f"{wrench.get_name()}_hold", ZeroOrderHold(period_s, wrench.size())
+            )
+            self.builder.Connect(wrench, held.get_input_port())
+            return held.get_output_port()
+
+        self._on_tool["proxy"] = hold(body.GetOutputPort("F_To_W"))
+        if self._moving:
+            self.outputs["F_O_W"] = hold(proxy.GetOutputPort("F_O_W"))
+            self._on_objects["contact"] = self.outputs["F_O_W"]
+
     def add_coupling(
         self,
         gains: _core.CouplingGains,
         X_HT: RigidTransform,
         device: HapticDevice | None,
     ) -> None:
-        """Adds the coupling to a handle: that of a device, or given by inputs."""
+        """Adds the coupling to a handle: that of a device, or given by inputs.
+
+        It holds what contact stops: the tool by the penalty law, else its proxy. The
+        damper is the tool's in both cases: a proxy has no mass to damp.
+        """
         coupling = self.builder.AddNamedSystem(
             "virtual_coupling", VirtualCoupling(gains, X_HT)
         )
-        self._push_tool("coupling", coupling.GetOutputPort("wrench_model"))
+        if self._proxy is None:
+            self._push_tool("coupling", coupling.GetOutputPort("wrench_model"))
+        else:
+            pull, proxy = coupling.GetOutputPort("wrench_model"), self._proxy
+            body = self.builder.GetSubsystemByName("body_of_proxy")
+            for source, port in [
+                (pull, proxy.GetInputPort("handle")),
+                (pull, body.GetInputPort("handle")),
+                (proxy.GetOutputPort("X_WT"), coupling.GetInputPort("X_WT")),
+            ]:
+                self.builder.Connect(source, port)
         self._asked = coupling.GetOutputPort("F_Ho_W_commanded")
         self.outputs["F_Ho_W_commanded"] = self._asked
         if device is None:

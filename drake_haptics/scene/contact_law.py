@@ -9,6 +9,8 @@ from drake_haptics.geometry.mesh.report import length
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.scene.yaml_loading import make_hint
 
+LARGEST_DEFAULT_SKIN_M = 3e-4
+"""Skin where none is given and nothing is tight, m."""
 _LAWS = ("penalty", "constraint")
 # Effects that act on the springs of the penalty law, and a material's gains of these.
 _OF_PENALTY = ("shading", "braking")
@@ -22,7 +24,9 @@ def is_constraint(contact: ContactParameters) -> bool:
 
 def calc_first_touch(contact: ContactParameters) -> float:
     """Returns the distance at which contact begins to push, m."""
-    return contact.skin_m if is_constraint(contact) else contact.tolerance_m
+    if is_constraint(contact):
+        return contact.skin_m or LARGEST_DEFAULT_SKIN_M
+    return contact.tolerance_m
 
 
 def check_law(law: str) -> None:

@@ -291,7 +291,8 @@ class ContactParameters:
         law: `penalty`, springs and dampers that push surfaces apart, or `constraint`,
             by which the tool's step keeps all surfaces `skin_m` apart.
         skin_m: For `constraint`: distance that the tool keeps from each object, m (the
-            δ of a row). What is to fit needs more play on each side than this.
+            δ of a row). What is to fit needs more play on each side than this. Defaults
+            to 3e-4, and to less where on the hand's path there is less play.
         tolerance_m: Pieces nearer than this push each other apart, m (the paper's t).
         stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
@@ -311,7 +312,7 @@ class ContactParameters:
     """
 
     law: str = "penalty"
-    skin_m: float = 3e-4
+    skin_m: float | None = None
     tolerance_m: float = 2e-3
     stiffness_N_per_m: float = 2e4
     damping_Ns_per_m: float = 5.0

@@ -11,7 +11,11 @@ from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.decomposition.decompose import METHODS
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.parsing.model_file import is_model_file
-from drake_haptics.scene.contact_law import check_constraint_law, check_law
+from drake_haptics.scene.contact_law import (
+    check_constraint_law,
+    check_law,
+    is_constraint,
+)
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
@@ -71,7 +75,7 @@ def check_values(scene: Scene) -> None:
     )
     require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
     _check_tick_budget(scene.device)
-    if scene.contact.law == "constraint":
+    if is_constraint(scene.contact):
         check_constraint_law(
             scene.contact,
             scene.effects,
@@ -102,16 +106,12 @@ def check_rendering(
         coupling: As in a scene, if there is a handle.
 
     Raises:
-        SceneError: A value out of its range, or contact is not by the penalty law.
+        SceneError: A value out of its range, or one that does nothing under this law.
     """
     _check_contact(contact)
-    require(
-        contact.law == "penalty",
-        "contact.law",
-        f"is '{contact.law}', which moves the tool itself; a body of a plant is moved"
-        " by the plant: take penalty",
-    )
     _check_effects(effects)
+    if is_constraint(contact):
+        check_constraint_law(contact, effects, sheds_load=False)
     for name, material in materials.items():
         _check_material(material, f"materials[{name!r}]", effects)
     if coupling is not None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -27,7 +28,7 @@ from drake_haptics._core import (
     RigidToolDynamics,
     joined_coupling_wrench,
 )
-from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
@@ -147,6 +148,7 @@ class ConstraintToolStep(Diagram):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str] = (),
+        plant: MultibodyPlant | None = None,
         *,
         coefficient: Sequence[float] = (),
         break_away_m: float = 1e-4,
@@ -163,6 +165,8 @@ class ConstraintToolStep(Diagram):
             X_WT: Default pose; the tool starts at rest.
             period_s: The tick, s.
             wrench_names: A name for each input of another wrench.
+            plant: One with a body that is the handle: `Simulator.Initialize` puts the
+                tool there, and its update sees the plant as the plant's own does.
             coefficient: μ of friction with each object. Defaults to no friction.
             break_away_m: How far the tool gives way before it slides, m.
 
@@ -194,6 +198,7 @@ class ConstraintToolStep(Diagram):
                 X_WT,
                 period_s,
                 wrench_names,
+                plant,
                 coefficient,
                 break_away_m,
             ),
@@ -265,6 +270,7 @@ class _ConstraintStep(DifferentiableSystem):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str],
+        plant: MultibodyPlant | None,
         coefficient: Sequence[float],
         break_away_m: float,
     ):
@@ -362,7 +368,19 @@ class _ConstraintStep(DifferentiableSystem):
             self.DeclareVectorOutputPort(
                 "friction_model", 78, self._calc_friction_model, from_result
             )
-        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+        if plant is not None:
+            self.DeclareInitializationDiscreteUpdateEvent(self._start)
+        if plant is not None and plant.has_sampled_output_ports():
+            # As the plant's: a discrete update would come after it.
+            self.DeclarePeriodicUnrestrictedUpdateEvent(
+                period_s,
+                0.0,
+                lambda context, state: self._update(
+                    context, state.get_mutable_discrete_state()
+                ),
+            )
+        else:
+            self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
         stepper = ConstraintStepper(
@@ -491,6 +509,13 @@ class _ConstraintStep(DifferentiableSystem):
         next_state.set_value(0, np.concatenate([result.q_WT, result.V_WT]))
         if len(self._coefficient) > 0:
             next_state.set_value(1, result.friction.next_state)
+
+    def _start(self, context: Context, next_state: DiscreteValues) -> None:
+        X_WT = vector_to_pose(self._X_WH.Eval(context)) @ vector_to_pose(self._q_HT)
+        V_WH = self._V_WH.Eval(context)
+        arm = X_WT.translation() - self._X_WH.Eval(context)[4:]
+        V_WT = V_WH + np.concatenate([np.zeros(3), np.cross(V_WH[:3], arm)])
+        next_state.set_value(0, np.concatenate([pose_to_vector(X_WT), V_WT]))
 
     def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
         output.set_value(self._eval_result(context).F_Ho_W_commanded)

@@ -26,6 +26,7 @@ SCENES = [
     "can_box",
     "cup_spoon",
     "hammer_block",
+    "nut_on_bolt",
     "peg_in_hole",
     "rubbed_sphere",
     "sphere_pen",

@@ -25,6 +25,7 @@ from drake_haptics import (
 )
 from drake_haptics.scene.schema import (
     BrakingParameters,
+    ContactParameters,
     CouplingParameters,
     Effects,
     FrictionParameters,
@@ -66,6 +67,11 @@ def systems(tmp_path_factory):
         braking=BrakingParameters(),
     )
     _, rendering = make_scene(cart=True, effects=effects, coupling=CouplingParameters())
+    _, by_proxy = make_scene(
+        cart=True,
+        contact=ContactParameters(law="constraint"),
+        coupling=CouplingParameters(),
+    )
     effects.passivity = PassivityParameters()
     _, with_device = make_scene(
         effects=effects, coupling=CouplingParameters(), device=make_device()
@@ -74,6 +80,7 @@ def systems(tmp_path_factory):
         *list_systems(BuildHapticDiagram(scene).diagram),
         *list_systems(held.diagram),
         *list_systems(rendering),
+        *list_systems(by_proxy),
         with_device,
         *list_systems(
             BuildHapticDiagram(load_scene(find_scene("peg_in_hole"))).diagram

@@ -33,6 +33,7 @@ from drake_haptics.device.backend import DeviceReading
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
+from drake_haptics.scene.contact_law import calc_first_touch
 from drake_haptics.scene.schema import (
     BrakingParameters,
     Effects,
@@ -91,7 +92,7 @@ def read(haptic, context, name):
 def test_every_shipped_scene_runs_and_nothing_touches(name):
     haptic = BuildHapticDiagram(by_constraint(name))
     statistics = run(haptic, 1.0, energy=True)
-    skin_m = haptic.scene.contact.skin_m
+    skin_m = calc_first_touch(haptic.scene.contact)
     assert statistics.contacts.max > 0
     assert statistics.max_force_N > 0.05
     # The step is linear: what a turn takes of the skin is of second order.

@@ -35,7 +35,7 @@ OF_PENALTY = {
 def test_a_scene_is_by_the_penalty_law_unless_it_says_otherwise():
     assert ContactParameters().law == "penalty"
     laws = {name: load_scene(path).contact.law for name, path in list_scenes().items()}
-    assert laws.pop("peg_in_hole") == "constraint"
+    assert laws.pop("peg_in_hole") == laws.pop("nut_on_bolt") == "constraint"
     assert set(laws.values()) == {"penalty"}
 
 
@@ -101,10 +101,12 @@ def test_effects_that_need_no_spring_are_kept():
     check_constraint_law(CONSTRAINT, effects, sheds_load=False, materials={})
 
 
-def test_a_plant_keeps_the_penalty_law():
-    check_rendering(ContactParameters(), {}, Effects(), None)
-    with pytest.raises(SceneError, match=r"contact\.law .* take penalty"):
-        check_rendering(CONSTRAINT, {}, Effects(), None)
+def test_a_plant_takes_either_law_with_what_it_has():
+    for contact in (ContactParameters(), CONSTRAINT):
+        check_rendering(contact, {}, Effects(), None)
+    slow = ContactParameters(law="constraint", query_rate_hz=500.0)
+    with pytest.raises(SceneError, match=r"query_rate_hz does nothing"):
+        check_rendering(slow, {}, Effects(), None)
 
 
 def test_each_object_can_have_its_skin():

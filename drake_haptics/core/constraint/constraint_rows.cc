@@ -110,11 +110,12 @@ void ConstraintRows::Query(const Pose& X_WT, double reach) {
     step = 0;
   }
   odometer_ += step;
+  turned_ += motion.turn();
   reach_ = reach;
   planes_.clear();
   deadlines_.Collect(odometer_ + reach, &due_);
   const Pose last_X_WT = std::exchange(X_WT_, X_WT);
-  for (const int i : due_) QueryObject(i, last_X_WT, step);
+  for (const int i : due_) QueryObject(i, last_X_WT, motion);
   least_distance_ = kForever;
   for (const SeparatingPlane& plane : planes_) {
     least_distance_ = std::min(least_distance_, plane.nearest);
@@ -126,23 +127,25 @@ void ConstraintRows::Query(const Pose& X_WT, double reach) {
 }
 
 void ConstraintRows::QueryObject(int i, const Pose& last_X_WT,
-                                 double tool_step) {
+                                 const Motion& tool_motion) {
   Object& object = objects_[i];
   const Pose X_AB = RelativePose(X_WT_, object.X_WO);
   if (object.has_moved) {
     const Pose last_X_AB = RelativePose(last_X_WT, object.last_X_WO);
-    const double step =
-        Motion(last_X_AB.inverse(), X_AB.inverse()).Bound(middle_, radius_);
-    object.ahead += step - tool_step;
+    const Motion motion(last_X_AB.inverse(), X_AB.inverse());
+    const double step = motion.Bound(middle_, radius_);
+    object.ahead += step - tool_motion.Bound(middle_, radius_);
+    object.turned_ahead += motion.turn() - tool_motion.turn();
     if (step > 2 * radius_) {
       object.near.Reset();
-      object.ahead = 0;
+      object.ahead = object.turned_ahead = 0;
     }
     object.last_X_WO = object.X_WO;
     object.has_moved = false;
   }
   const std::size_t first = planes_.size();
-  object.near.Query({tool_, X_AB, odometer_ + object.ahead, reach_of(i)},
+  object.near.Query({tool_, X_AB, odometer_ + object.ahead,
+                     turned_ + object.turned_ahead, reach_of(i)},
                     &workspace_, &planes_);
   double least = kForever;
   for (std::size_t k = first; k < planes_.size(); ++k) {
@@ -329,11 +332,11 @@ void ConstraintRows::AppendRows(int k) {
 void ConstraintRows::Reset() {
   for (int i = 0; i < num_objects(); ++i) {
     objects_[i].near.Reset();
-    objects_[i].ahead = 0;
+    objects_[i].ahead = objects_[i].turned_ahead = 0;
     marks_[i] = -kForever;
     deadlines_.MakeDue(i);
   }
-  odometer_ = 0;
+  odometer_ = turned_ = 0;
   is_first_ = true;
   is_apart_ = true;
 }

@@ -112,11 +112,12 @@ class ConstraintRows {
     Pose last_X_WO;  // at the last query
     double sweep = 0;
     bool has_moved = false;
-    // What its own odometer is ahead of the tool's, by its own motion, m.
-    double ahead = 0;
+    // What its own odometer is ahead of the tool's, by its own motion, m and
+    // rad.
+    double ahead = 0, turned_ahead = 0;
   };
 
-  void QueryObject(int i, const Pose& last_X_WT, double tool_step);
+  void QueryObject(int i, const Pose& last_X_WT, const Motion& tool_motion);
   void QueryOverlaps();
   bool IsDeep(int object) const;
   void AppendRows(int plane);
@@ -132,6 +133,7 @@ class ConstraintRows {
   double reach_ = 0;
   bool is_first_ = true;
   double odometer_ = 0;        // of the tool in the world, m
+  double turned_ = 0;          // of it, rad
   DeadlineTree deadlines_;     // of the objects, by the tool's odometer
   std::vector<double> marks_;  // the same deadlines, by object
   std::vector<int> due_;

@@ -1,6 +1,7 @@
 #include "constraint/near_pieces.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "pair/convex_pair.h"
@@ -21,38 +22,43 @@ void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
                                    tick.odometer, tick.reach};
   entered_.clear();
   front_.Advance(front_tick, &entered_);
+  const Box whole = tick.tool.tree->bounds();
   for (const EnteredPair& entered : entered_) {
-    watched_.push_back(
-        {entered.pieces, entered.node, tick.odometer + entered.gap, {}});
-  }
-  if (!entered_.empty()) {
-    std::sort(watched_.begin(), watched_.end(),
-              [](const auto& p, const auto& q) { return p.pieces < q.pieces; });
+    const Box& piece = tick.tool.tree->box_of(entered.pieces.a);
+    const double radius =
+        (piece.center - whole.center).norm() + piece.half.norm();
+    WatchedPair pair{entered.pieces, entered.node,
+                     std::max(0.0, whole.half.norm() - radius)};
+    pair.mark = pair.Reading(tick) + entered.gap;
+    watched_.push_back(pair);
   }
   mark_ = kNever;
-  auto kept = watched_.begin();
-  for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
+  const auto first = static_cast<std::ptrdiff_t>(planes->size());
+  for (std::size_t i = 0; i < watched_.size();) {
+    WatchedPair& pair = watched_[i];
     PairContact contact;
     bool is_near = false;
-    if (pair->mark <= tick.odometer + tick.reach &&
-        !Update(tick, front_tick, workspace, &*pair, &contact, &is_near)) {
+    if (pair.mark <= pair.Reading(tick) + tick.reach &&
+        !Update(tick, front_tick, workspace, &pair, &contact, &is_near)) {
+      pair = watched_.back();
+      watched_.pop_back();
       continue;
     }
-    if (kept != pair) *kept = *pair;
     if (is_near) {
       planes->push_back({contact,
-                         kept->pieces,
+                         pair.pieces,
                          0,
-                         static_cast<int>(kept - watched_.begin()),
+                         static_cast<int>(i),
                          contact.distance,
                          0,
                          {contact.support[0], contact.support[1]}});
     } else {
-      mark_ = std::min(mark_, kept->mark);
+      mark_ = std::min(mark_, tick.odometer + pair.mark - pair.Reading(tick));
     }
-    ++kept;
+    ++i;
   }
-  watched_.erase(kept, watched_.end());
+  std::sort(planes->begin() + first, planes->end(),
+            [](const auto& p, const auto& q) { return p.pieces < q.pieces; });
   mark_ = std::min(mark_, front_.mark());
 }
 
@@ -94,7 +100,7 @@ bool NearPieces::Update(const Tick& tick, const BvttFront::Tick& front_tick,
       gap = contact->distance;
     }
   }
-  pair->mark = tick.odometer + gap;
+  pair->mark = pair->Reading(tick) + gap;
   return true;
 }
 

@@ -33,15 +33,17 @@ struct SeparatingPlane {
 /// The pairs of convex pieces of a tool (A) and an object (B) that are within
 /// reach, from tick to tick: pieces whose boxes are far apart cost nothing
 /// (bvtt_front.h), and of two that are near, an odometer tells when they have
-/// to be looked at again. Every pair counts, whatever of its features lies on
-/// the meshes' surfaces: a piece inside a solid is a valid constraint for as
-/// long as the solids are apart. Copies are independent.
+/// to be looked at again. That of a piece near the middle of A, about which A
+/// turns, counts less than A's. Every pair counts, whatever of its features
+/// lies on the meshes' surfaces: a piece inside a solid is a valid constraint
+/// for as long as the solids are apart. Copies are independent.
 class NearPieces {
  public:
   struct Tick {
     const TreedShape& tool;
     const Pose& X_AB;
     double odometer;  ///< how far A's points have gone in B, at most, m
+    double turned;    ///< how far A has turned in B, rad: part of that
     double reach;     ///< pairs up to this distance are wanted, m
   };
 
@@ -76,9 +78,14 @@ class NearPieces {
  private:
   struct WatchedPair {
     PiecePair pieces;
-    int node = 0;     // in the front
-    double mark = 0;  // the odometer's reading plus the distance, then known
+    int node = 0;      // in the front
+    double inner = 0;  // what A's radius is larger than the piece's, m
+    double mark = 0;   // its odometer's reading plus the distance, then known
     PairState state;
+
+    double Reading(const Tick& tick) const {
+      return tick.odometer - inner * tick.turned;
+    }
   };
 
   bool Update(const Tick& tick, const BvttFront::Tick& front_tick,
@@ -87,7 +94,7 @@ class NearPieces {
 
   TreedShape shape_;
   BvttFront front_;
-  std::vector<WatchedPair> watched_;  // sorted by pieces
+  std::vector<WatchedPair> watched_;  // as they entered
   std::vector<EnteredPair> entered_;
   double mark_ = 0;
 };

@@ -18,12 +18,15 @@ from drake_haptics.evaluation.shapes.solids import (
     make_torus,
 )
 from drake_haptics.evaluation.shapes.surface import Surface
+from drake_haptics.evaluation.shapes.threads import make_bolt, make_nut
 
 # Name of a shipped mesh -> the function that makes it.
 SHAPES: dict[str, Callable[[], Surface]] = {
     "block": make_block,
+    "bolt": make_bolt,
     "cup": make_cup,
     "hammer": make_hammer,
+    "nut": make_nut,
     "peg": make_peg,
     "pen": make_pen,
     "socket": make_socket,

@@ -14,7 +14,7 @@ from drake_haptics.evaluation.shapes.surface import SurfaceBuilder
 
 # Triangles in Table 1 of Kim, Otaduy, Lin and Manocha.
 TABLE_1 = {"torus": 2000, "cup": 500, "spoon": 336, "hammer": 1692}
-HANDLES = {"torus": 1, "cup": 1}
+HANDLES = {"torus": 1, "cup": 1, "nut": 1}
 CONVEX = {"block", "peg", "pen", "sphere"}
 
 

@@ -12,11 +12,13 @@ from box_scenes import write
 from cell_mesh import cell_mesh
 from pydrake.math import RigidTransform, RotationMatrix
 
-from drake_haptics.authoring.clearance import Clearance, find_clearance
+from drake_haptics import make_simulator
 from drake_haptics.authoring.plausibility import check_plausibility
+from drake_haptics.evaluation.shapes.solids import SOCKET_PLAY_M
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.clearance import Clearance, find_clearance, fit_skin
 from drake_haptics.models import FOLDER
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
@@ -60,20 +62,23 @@ def ask(tool, body, distance_m, *p, X_WO=None) -> Clearance | None:
     """The clearance at positions p of the tool."""
     poses = [RigidTransform(x) for x in p]
     objects = [(body, X_WO or RigidTransform())]
-    return find_clearance(tool, objects, poses, distance_m)
+    return find_clearance(tool, objects, poses, [distance_m])
 
 
 @pytest.mark.parametrize("shift", [(0, 0), (0.9, 0), (-0.5, 0.8)])
 @pytest.mark.parametrize("lift_m", [0.0, 0.012])
 def test_half_the_play_of_a_square_peg_is_found(shift, lift_m) -> None:
-    """In the middle and beside it; where the peg is in a wall it cannot be."""
+    """In the middle and beside it; and in a wall."""
     peg, plate = pieces(make_peg()), pieces(make_plate())
     p = [PLAY_M * shift[0], PLAY_M * shift[1], lift_m]
     found = ask(peg, plate, 1.5 * PLAY_M, p)
     assert found is not None and found.objects == (0,)
-    assert found.distance_m == pytest.approx(PLAY_M, rel=1e-6)
+    assert found.share * 1.5 * PLAY_M == pytest.approx(PLAY_M, rel=1e-6)
     assert ask(peg, plate, 0.99 * PLAY_M, p) is None
-    assert ask(peg, plate, 1.5 * PLAY_M, [1.1 * PLAY_M, 0, lift_m]) is None
+    # From within a wall it is led there.
+    found = ask(peg, plate, 1.5 * PLAY_M, [1.1 * PLAY_M, 0, lift_m])
+    assert found is not None
+    assert found.share * 1.5 * PLAY_M == pytest.approx(PLAY_M, rel=1e-6)
 
 
 def test_half_the_play_of_a_round_peg_is_found() -> None:
@@ -84,7 +89,7 @@ def test_half_the_play_of_a_round_peg_is_found() -> None:
     for p in ([0, 0, 0], [2e-4, -1e-4, 0.003]):
         found = ask(pieces(peg), pieces(ring), 1e-3, p)
         assert found is not None
-        assert found.distance_m == pytest.approx(room_m, rel=1e-2)
+        assert found.share * 1e-3 == pytest.approx(room_m, rel=1e-2)
 
 
 def test_the_tightest_place_of_a_way_counts_and_the_world_s_frame_does_not() -> None:
@@ -96,13 +101,13 @@ def test_the_tightest_place_of_a_way_counts_and_the_world_s_frame_does_not() -> 
     tools = pieces(peg)
     objects = [(pieces(make_plate()), X_WO)]
     way = [X_WO @ RigidTransform([0.0, 0.0, z]) for z in np.linspace(0.05, 0, 30)]
-    found = find_clearance(tools, objects, way, 2e-3)
+    found = find_clearance(tools, objects, way, [2e-3])
     assert found is not None
-    assert found.distance_m == pytest.approx(PLAY_M, rel=1e-6)
+    assert found.share * 2e-3 == pytest.approx(PLAY_M, rel=1e-6)
     # Only the thin part is in the hole there.
-    (found,) = (find_clearance(tools, objects, [way[10]], 2e-3),)
+    (found,) = (find_clearance(tools, objects, [way[10]], [2e-3]),)
     assert found is not None
-    assert found.distance_m == pytest.approx(1e-3, rel=1e-6)
+    assert found.share * 2e-3 == pytest.approx(1e-3, rel=1e-6)
 
 
 def test_two_objects_that_leave_little_between_them_are_named() -> None:
@@ -114,9 +119,9 @@ def test_two_objects_that_leave_little_between_them_are_named() -> None:
         (wall, RigidTransform([-0.015 - PLAY_M, 0, 0])),
         (wall, RigidTransform([0.015 + PLAY_M, 0, 0])),
     ]
-    found = find_clearance(cube, objects, [RigidTransform([1e-4, 0, 0])], 1e-3)
+    found = find_clearance(cube, objects, [RigidTransform([1e-4, 0, 0])], [1e-3] * 3)
     assert found is not None and found.objects == (1, 2)
-    assert found.distance_m == pytest.approx(PLAY_M, rel=1e-6)
+    assert found.share * 1e-3 == pytest.approx(PLAY_M, rel=1e-6)
 
 
 def test_what_lets_the_tool_out_is_not_tight() -> None:
@@ -134,9 +139,9 @@ def test_what_lets_the_tool_out_is_not_tight() -> None:
     lid = trimesh.creation.box([0.02, 0.02, 0.01])
     lid.apply_translation([0.015, 0.015, 0.0255 + 5e-4])
     both = [(walls, RigidTransform()), (pieces(lid), RigidTransform())]
-    found = find_clearance(cube, both, [RigidTransform(np.full(3, 0.0155))], 2e-3)
+    found = find_clearance(cube, both, [RigidTransform(np.full(3, 0.0155))], [2e-3] * 2)
     assert found is not None
-    assert found.distance_m == pytest.approx(5e-4, rel=1e-6)
+    assert found.share * 2e-3 == pytest.approx(5e-4, rel=1e-6)
 
 
 def box_of(half_m: float, z_m: float) -> list[list[float]]:
@@ -200,3 +205,71 @@ def test_a_scene_is_told_the_number_that_fits(
     assert 0.97 * PLAY_M < float(value) <= PLAY_M
     setattr(scene.contact, name, float(value))
     assert check_plausibility(BuildHapticDiagram(scene)) == []
+
+
+def test_two_walls_share_their_play_by_what_each_should_keep() -> None:
+    """0.3 mm from one and 0.1 mm from the other need half of 0.8 mm."""
+    wall = pieces(trimesh.creation.box([0.01, 0.05, 0.05]))
+    cube = pieces(trimesh.creation.box([0.02, 0.02, 0.02]))
+    objects = [
+        (wall, RigidTransform([side * (0.015 + PLAY_M), 0, 0])) for side in (-1, 1)
+    ]
+    asked = [(1.2e-3, 4e-4), (6e-4, 1.9e-4)]
+    found, fits = (
+        find_clearance(cube, objects, [RigidTransform()], kept) for kept in asked
+    )
+    assert fits is None
+    assert found is not None and found.share == pytest.approx(0.5, rel=1e-6)
+
+
+def test_the_skin_of_an_object_is_told_by_its_own_key(tmp_path: Path) -> None:
+    scene = make_scene(tmp_path, 1e-4)
+    scene.contact.law = "constraint"
+    scene.environment[0].material.skin_m = 1e-3
+    (question,) = check_plausibility(BuildHapticDiagram(scene))
+    assert question.startswith("environment[0].material.skin_m: is 1 mm")
+    assert "environment[0].material.skin_m: 0.0004 fits" in question
+
+
+@pytest.mark.parametrize(("play_m", "skin_m"), [(2e-4, 2e-4), (4e-4, 3e-4)])
+def test_the_default_skin_is_never_more_than_the_play(
+    tmp_path: Path, play_m: float, skin_m: float
+) -> None:
+    """The peg goes in, and nothing is asked."""
+    scene = make_scene(tmp_path, 1e-4)
+    write(tmp_path, "peg", make_peg(play_m))
+    scene.contact.law = "constraint"
+    haptic = BuildHapticDiagram(scene)
+    assert check_plausibility(haptic) == []
+    objects = [(haptic.environment[0].core, RigidTransform())]
+    fitted = fit_skin(scene, haptic.tool.core, objects).skin_m
+    assert fitted is not None and fitted <= skin_m
+    assert fitted == pytest.approx(skin_m, rel=0.02)
+    assert scene.contact.skin_m is None
+    # It goes in.
+    simulator = make_simulator(haptic)
+    simulator.AdvanceTo(1.5)
+    X_WT = haptic.loop.outputs["X_WT"]
+    context = X_WT.get_system().GetMyContextFromRoot(simulator.get_context())
+    assert X_WT.Eval(context)[6] < 1e-3
+
+
+def test_a_tool_that_is_pressed_into_a_wall_is_asked_beside_it() -> None:
+    """Through the wall of its hole, and through the floor of a blind one."""
+    peg, plate = pieces(make_peg()), pieces(make_plate())
+    floor = pieces(trimesh.creation.box([0.03, 0.03, 0.01]))
+    objects = [(plate, RigidTransform()), (floor, RigidTransform([0, 0, -0.01]))]
+    for p in ([0.002, 0, 0.012], [0, 0, 0.008], [0.001, -0.001, 0.009]):
+        found = find_clearance(peg, objects, [RigidTransform(p)], [1e-3] * 2)
+        assert found is not None and 0 in found.objects
+        assert found.share * 1e-3 == pytest.approx(PLAY_M, rel=1e-3)
+
+
+def test_the_play_of_the_shipped_peg_is_found() -> None:
+    """Its hand presses it against the floor, and askew."""
+    scene = load_scene(find_scene("peg_in_hole"))
+    scene.contact.skin_m = None
+    haptic = BuildHapticDiagram(scene)
+    objects = [(haptic.environment[0].core, RigidTransform())]
+    fitted = fit_skin(scene, haptic.tool.core, objects).skin_m
+    assert fitted is not None and 0.9 * SOCKET_PLAY_M < fitted <= SOCKET_PLAY_M

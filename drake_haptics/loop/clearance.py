@@ -1,0 +1,184 @@
+"""Finds how much room a tool has in what encloses it, and a skin that fits there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.math import RigidTransform
+
+from drake_haptics import _core
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.loop.contact import find_skins
+from drake_haptics.loop.simulated_device import make_hand_path
+from drake_haptics.scene.contact_law import LARGEST_DEFAULT_SKIN_M, is_constraint
+from drake_haptics.scene.schema import ContactParameters, HandPathParameters, Scene
+
+# So many places of the hand's path are looked at.
+_PLACES = 100
+# So often a tool is led out of what it is pressed into.
+_MOVES = 3
+# What a move costs, by its length, against the share that it wins.
+_WAY, _ROUNDING = 1e-5, 1e-6
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """How much room a tool has where it has least.
+
+    Attributes:
+        share: Of the distances to be kept, the largest that the tool can be moved to
+            from all surfaces at once: for one distance it is half the play between two
+            walls, divided by it.
+        objects: Indices of the objects that leave no more.
+    """
+
+    share: float
+    objects: tuple[int, ...]
+
+
+def find_clearance(
+    tool: _core.ConvexPieces,
+    objects: Sequence[tuple[_core.ConvexPieces, RigidTransform]],
+    poses: Iterable[RigidTransform],
+    kept_m: Sequence[float],
+) -> Clearance | None:
+    """Returns the least clearance of a tool, if it is less than it should be.
+
+    A tool that is moved by x is at least dᵢ + nᵢ·x from the piece of contact i, since
+    the distance of convex pieces is convex in x. So no translation of at most the
+    tool's own size brings it farther from all pieces than by the largest share s of
+    what should be kept, δᵢ, with s δᵢ ≤ dᵢ + nᵢ·x: a linear program. What lets the
+    tool out on one side, as the floor, a corner or a cone does, leaves s as large as
+    one likes.
+
+    Where the tool overlaps an object it will not be. Where it does so in all tight
+    places, because a hand presses it, the same program leads it out to places beside.
+
+    Args:
+        tool: Its pieces, in its frame T.
+        objects: Pieces of each object and its pose X_WO.
+        poses: Poses X_WT to look at.
+        kept_m: The distance that the tool should be able to keep from each object, m.
+    """
+    # Two walls that leave less than that on each side are nearer than twice as much,
+    # wherever between them the tool is.
+    tracker = _core.SceneTracker(tool, [body for body, _ in objects], 2 * max(kept_m))
+    kept = np.array(kept_m)
+    for i, (_, X_WO) in enumerate(objects):
+        tracker.set_object_pose(i, pose_to_vector(X_WO))
+    size_m = float(np.linalg.norm(np.ptp(tool.vertices, axis=0)))
+    pressed: list[NDArray[np.float64]] = []
+
+    def ask(q_WT: NDArray[np.float64]) -> tuple[NDArray[np.float64], Clearance | None]:
+        tracker.reset()
+        contacts = tracker.query(q_WT)
+        x_W, found = _find_room(contacts, size_m, kept[contacts.object_index])
+        if contacts.least_distance > 0.0:
+            return np.zeros(3), found
+        return x_W, None
+
+    found = []
+    for X_WT in poses:
+        q_WT = pose_to_vector(X_WT)
+        x_W, room = ask(q_WT)
+        found.append(room)
+        if np.any(x_W):
+            pressed.append(q_WT + np.concatenate([np.zeros(4), x_W]))
+    rooms = [room for room in found if room is not None]
+    if not rooms:
+        # As it is turned there, the tool may have less room than as it will turn.
+        for q_WT in pressed:
+            for _ in range(_MOVES):
+                x_W, room = ask(q_WT)
+                if not np.any(x_W):
+                    break
+                q_WT[4:] += x_W
+            if room is not None:
+                rooms.append(room)
+    return min(rooms, key=lambda room: room.share, default=None)
+
+
+def sample_path(parameters: HandPathParameters) -> list[RigidTransform]:
+    """Returns poses X_WT along a hand's path, so many that a tool's way is known."""
+    path = make_hand_path(parameters)
+    times = np.linspace(0.0, path.duration_s, _PLACES)
+    return [vector_to_pose(path.calc(t)[0]) for t in times]
+
+
+def fit_skin(
+    scene: Scene,
+    tool: _core.ConvexPieces,
+    objects: Sequence[tuple[_core.ConvexPieces, RigidTransform]],
+) -> ContactParameters:
+    """Returns a scene's contact with the skin that is not given.
+
+    It is that of `find_skins`, or as much of it as the tool can keep on the hand's
+    path.
+
+    Args:
+        scene: Whose contact it is.
+        tool: Its pieces, in its frame T.
+        objects: Pieces of each object and its pose X_WO.
+    """
+    contact = scene.contact
+    if not is_constraint(contact) or contact.skin_m is not None:
+        return contact
+    skins = find_skins(contact, [item.material for item in scene.environment])
+    found = find_clearance(tool, objects, sample_path(scene.hand.path), skins)
+    share = 1.0 if found is None else found.share
+    return replace(contact, skin_m=round_down(share * LARGEST_DEFAULT_SKIN_M))
+
+
+def round_down(value: float) -> float:
+    """Returns a positive number with two digits, the second not rounded up."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    # What has two digits already may be a little less by round-off.
+    return float(f"{digit * math.floor(value / digit * (1.0 + 1e-12)):.2g}")
+
+
+def _find_room(
+    contacts: _core.ContactSet, size_m: float, kept_m: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], Clearance | None]:
+    """Returns the shortest move that keeps all contacts away by what they should be.
+
+    Where there is none, it keeps as much as can be, and the clearance is told.
+    """
+    n_W, d = contacts.nhat_BA_W, contacts.distance
+    stay = np.zeros(3)
+    if len(d) < 2 or _can_leave(n_W, d, size_m, kept_m):
+        return stay, None
+    distance_m = float(kept_m.max())
+    from scipy.optimize import linprog
+
+    # Of (x, -x, s) as shares of the distance, so that all numbers are near 1.
+    solved = linprog(
+        [_WAY] * 6 + [-1.0],
+        A_ub=np.column_stack([-n_W, n_W, kept_m / distance_m]),
+        b_ub=d / distance_m,
+        bounds=[(0.0, size_m / distance_m)] * 6 + [(None, 1.0)],
+    )
+    x_W = distance_m * (solved.x[:3] - solved.x[3:6])
+    share = float(solved.x[6])
+    if share >= 1.0 - _ROUNDING:
+        return x_W, None
+    holding = solved.ineqlin.marginals < 0
+    objects = tuple(sorted(set(contacts.object_index[holding].tolist())))
+    return x_W, Clearance(share, objects)
+
+
+def _can_leave(
+    n_W: NDArray[np.float64],
+    d: NDArray[np.float64],
+    size_m: float,
+    kept_m: NDArray[np.float64],
+) -> bool:
+    """Whether a move along the mean normal leads the tool away from all surfaces."""
+    way = n_W.mean(axis=0)
+    length = float(np.linalg.norm(way))
+    if length < np.finfo(float).eps:
+        return False
+    return bool(np.all(d + size_m / length * (n_W @ way) >= kept_m))
