@@ -16,6 +16,7 @@ from drake_haptics.scene.validation import check_query_rate
 from drake_haptics.systems.contact.contact_clustering import (
     ClusteringMethod,
     ContactClustering,
+    DepthWarning,
 )
 from drake_haptics.systems.contact.contact_query import (
     ContactObject,
@@ -76,7 +77,7 @@ def add_contact_systems(
     *,
     enable_load_shedding: bool = False,
     enable_chain: bool = False,
-    warns_deep: bool = False,
+    depth_warning: DepthWarning | None = None,
 ) -> ContactSystems:
     """Adds the systems; their inputs from elsewhere are left to the caller.
 
@@ -91,7 +92,7 @@ def add_contact_systems(
         enable_load_shedding: Whether query and clustering take the `load_shedding` of a
             `LoadShedding`.
         enable_chain: Whether the query has the port `contact_chain`; see `can_chain`.
-        warns_deep: Whether the clustering warns of a deep contact itself.
+        depth_warning: Is asked of the contacts, if there is one.
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there
@@ -132,7 +133,7 @@ def add_contact_systems(
                 contact.tolerance_m,
                 contact.cluster_size_m,
                 enable_load_shedding=enable_load_shedding,
-                warns_deep=warns_deep,
+                depth_warning=depth_warning,
             ),
         ),
         penalty_force=builder.AddNamedSystem(
@@ -141,17 +142,20 @@ def add_contact_systems(
                 objects,
                 gains.stiffness_N_per_m.tolist(),
                 gains.damping_Ns_per_m.tolist(),
+                enable_chain=enable_chain,
+                depth_warning=depth_warning,
             ),
         ),
         pose_sampler=sample,
         contact_extrapolator=advance,
     )
     if enable_chain:
-        for system, name in [
-            (systems.contact_clustering, "rule"),
-            (systems.penalty_force, "gains"),
+        for source, system, name in [
+            (systems.contact_clustering, query, "rule"),
+            (systems.penalty_force, query, "gains"),
+            (query, systems.penalty_force, "contact_chain"),
         ]:
-            builder.Connect(system.GetOutputPort(name), query.GetInputPort(name))
+            builder.Connect(source.GetOutputPort(name), system.GetInputPort(name))
     return systems
 
 

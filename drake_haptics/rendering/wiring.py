@@ -9,10 +9,15 @@ from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Demultiplexer, Multiplexer
 
 from drake_haptics import _core
-from drake_haptics.loop.contact import add_contact_systems, find_contact_gains
+from drake_haptics.loop.contact import (
+    add_contact_systems,
+    can_chain,
+    find_contact_gains,
+)
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
+from drake_haptics.systems.contact.contact_clustering import DepthWarning
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.friction_reaction import FrictionReaction
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -92,7 +97,8 @@ class RenderingWiring:
             effects,
             materials,
             period_s,
-            warns_deep=True,
+            enable_chain=can_chain(self._objects, contact, effects),
+            depth_warning=DepthWarning(),
         )
         force = found.penalty_force
         gains = find_contact_gains(contact, materials)

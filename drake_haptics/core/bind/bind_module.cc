@@ -12,6 +12,20 @@ void drake_haptics::ImportNumpy() {
   };
 }
 
+namespace {
+
+PyObject* MakeEmptyList(PyObject*, PyObject*) { return PyList_New(0); }
+
+// Not by nanobind: pybind11 takes a plain C function for none of Python, keeps
+// in mind that the class of systems overrides nothing, and asks no more.
+PyMethodDef get_no_witness_functions = {
+    "get_no_witness_functions", &MakeEmptyList, METH_O,
+    "get_no_witness_functions(context)\n--\n\n"
+    "Returns nothing: the `DoGetWitnessFunctions` of a system without witness "
+    "functions."};
+
+}  // namespace
+
 NB_MODULE(_core, m) {
   m.doc() =
       "The compiled core of drake_haptics: geometry, contact query, clustering "
@@ -50,4 +64,6 @@ NB_MODULE(_core, m) {
   drake_haptics::BindToolLoop(m);
   drake_haptics::BindContactChain(m);
   drake_haptics::BindForeignContacts(m);
+  m.attr("get_no_witness_functions") =
+      nanobind::steal(PyCFunction_New(&get_no_witness_functions, nullptr));
 }
