@@ -17,7 +17,6 @@ from drake_haptics.loop.contact import (
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
-from drake_haptics.systems.contact.contact_clustering import DepthWarning
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.friction_reaction import FrictionReaction
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -98,7 +97,7 @@ class RenderingWiring:
             materials,
             period_s,
             enable_chain=can_chain(self._objects, contact, effects),
-            depth_warning=DepthWarning(),
+            warns_deep=True,
         )
         force = found.penalty_force
         gains = find_contact_gains(contact, materials)

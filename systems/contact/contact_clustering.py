@@ -63,32 +63,6 @@ class ClusteringRule:
             raise ValueError(f"delta_m is of the octree; the method is {self.method!r}")
 
 
-class DepthWarning:
-    """Warns of a contact that is deeper than ten tolerances, the first time.
-
-    A loop's `run` does so at its end, since to write may keep a loop waiting that a
-    hand holds; in a plant of yours the systems do.
-    """
-
-    def __init__(self) -> None:
-        """Has not warned yet."""
-        self._has_warned = False
-
-    def ask(self, least_distance_m: float, tolerance_m: float) -> None:
-        """Warns if it is time to.
-
-        Args:
-            least_distance_m: Of the deepest contact, m.
-            tolerance_m: The distance below which contacts push, m.
-        """
-        if self._has_warned:
-            return
-        if question := question_depth(-least_distance_m, tolerance_m):
-            self._has_warned = True
-            # Drake calls this: which of the user's lines it was is not known.
-            warnings.warn(question, SceneWarning, stacklevel=1)
-
-
 class ContactClustering(DifferentiableSystem):
     """Keeps many contacts from being stiffer than one.
 
@@ -135,7 +109,7 @@ class ContactClustering(DifferentiableSystem):
         delta_m: float | None = None,
         *,
         enable_load_shedding: bool = False,
-        depth_warning: DepthWarning | None = None,
+        warns_deep: bool = False,
     ):
         """Constructs the system.
 
@@ -147,14 +121,16 @@ class ContactClustering(DifferentiableSystem):
             delta_m: Cluster size δ of the octree, m.
             enable_load_shedding: Whether the loop sheds load, and there is a port for
                 that.
-            depth_warning: Is asked of the contacts, if there is one.
+            warns_deep: Whether the first contact that is deeper than ten tolerances
+                is warned of, where `run` does not: it waits for the end, since to
+                write may keep a loop waiting that a hand holds.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is
                 not positive, missing, or given where there is no octree.
         """
         super().__init__()
-        self._depth_warning = depth_warning
+        self._warns_deep = warns_deep
         rule = ClusteringRule(method, tolerance_m, delta_m)
         self._rule = self.DeclareAbstractParameter(Value[object](rule))
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
@@ -214,9 +190,22 @@ class ContactClustering(DifferentiableSystem):
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
         rule = context.get_abstract_parameter(self._rule).get_value()
         contacts = self._eval_contacts(context)
-        if self._depth_warning is not None:
-            self._depth_warning.ask(contacts.least_distance, rule.tolerance_m)
+        if self._warns_deep:
+            self.warn_of_depth(contacts.least_distance, rule.tolerance_m)
         clusters.set_value(_cluster(contacts, rule.tolerance_m, rule.delta_m))
+
+    def warn_of_depth(self, least_distance_m: float, tolerance_m: float) -> None:
+        """Warns of a contact that is deeper than ten tolerances, the first time.
+
+        Args:
+            least_distance_m: Of the deepest contact, m.
+            tolerance_m: The distance below which contacts push, m.
+        """
+        question = question_depth(-least_distance_m, tolerance_m)
+        if self._warns_deep and question:
+            self._warns_deep = False
+            # Drake calls this: which of the user's lines it was is not known.
+            warnings.warn(question, SceneWarning, stacklevel=1)
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
         assert self._load_shedding is not None

@@ -22,7 +22,6 @@ from drake_haptics._core import (
     penalty_force,
     penalty_wrench_model,
 )
-from drake_haptics.systems.contact.contact_clustering import DepthWarning
 from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
@@ -136,7 +135,7 @@ class PenaltyForce(DifferentiableSystem):
         damping_Ns_per_m: Sequence[float],
         *,
         enable_chain: bool = False,
-        depth_warning: DepthWarning | None = None,
+        warn_of_depth: Callable[[float, float], None] | None = None,
     ):
         """Constructs the system.
 
@@ -145,7 +144,8 @@ class PenaltyForce(DifferentiableSystem):
             stiffness_N_per_m: k of each object, N/m, in a Context that says no other.
             damping_Ns_per_m: k_v of each object, N·s/m, the same.
             enable_chain: Whether there is the port `contact_chain`.
-            depth_warning: Is asked of the contacts of the chain, if there is one.
+            warn_of_depth: That of `ContactClustering`, which the chain goes past, where
+                it is to warn.
 
         Raises:
             ValueError: A gain is negative or not finite, or there is not one for
@@ -172,7 +172,7 @@ class PenaltyForce(DifferentiableSystem):
             self._eval_chain = self.DeclareAbstractInputPort(
                 "contact_chain", Value[object]()
             ).Eval
-            self._depth_warning = depth_warning
+            self._warn_of_depth = warn_of_depth
             calc_F_To_W = self._calc_chained_F_To_W
         self.DeclareVectorOutputPort("F_To_W", 6, calc_F_To_W, from_inputs)
         self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
@@ -283,8 +283,8 @@ class PenaltyForce(DifferentiableSystem):
         output.set_value(
             chain.find_force(self._eval_X_WT(context), self._eval_V_WT(context))
         )
-        if self._depth_warning is not None:
-            self._depth_warning.ask(*chain.deepest)
+        if self._warn_of_depth is not None:
+            self._warn_of_depth(*chain.deepest)
 
     def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
         wrench = self._eval_wrench(context)
