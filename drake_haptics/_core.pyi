@@ -2438,7 +2438,7 @@ def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), 
         ValueError: the columns do not match or are not ordered, a number is not finite, a normal is not of unit length, or an index is negative.
     """
 
-def get_no_witness_functions(context):
+def make_witness_override() -> Callable[[object], list]:
     """
-    Returns nothing: the `DoGetWitnessFunctions` of a system without witness functions.
+    Returns the `DoGetWitnessFunctions` of a system without witness functions. It is a built-in function: pybind11 takes one for none of Python, keeps in mind that the class overrides nothing, and asks no more.
     """

@@ -15,7 +15,7 @@ from pydrake.systems.framework import (
     State,
 )
 
-from drake_haptics._core import FrameChange, get_no_witness_functions
+from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import (
@@ -25,7 +25,10 @@ from drake_haptics.device.backend import (
     Fault,
     GateState,
 )
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.differentiable_system import (
+    export_parts,
+    get_no_witness_functions,
+)
 
 
 class DeviceIo(Diagram):

@@ -28,7 +28,11 @@ from pydrake.systems.framework import (
 from pydrake.systems.primitives import Demultiplexer, Multiplexer
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics._core import AutoDiffVector, get_no_witness_functions
+from drake_haptics._core import AutoDiffVector, make_witness_override
+
+# Of a system without witness functions. After each unrestricted update Drake asks every
+# Python system for them, and not to find the override takes longer than to call it.
+get_no_witness_functions = make_witness_override()
 
 
 class AutoDiffPoint:
@@ -155,8 +159,6 @@ class DifferentiableSystem(_Convertible):
     """
 
     undifferentiated: frozenset[str] = frozenset()
-    # After each unrestricted update Drake asks every Python system for its witness
-    # functions, and not to find the override takes longer than to call it.
     DoGetWitnessFunctions = get_no_witness_functions
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:

@@ -14,9 +14,12 @@ from pydrake.systems.framework import (
 )
 from pydrake.systems.primitives import Multiplexer
 
-from drake_haptics._core import ClusterSet, ContactSet, get_no_witness_functions
+from drake_haptics._core import ClusterSet, ContactSet
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceReading
+from drake_haptics.systems.framework.differentiable_system import (
+    get_no_witness_functions,
+)
 from drake_haptics.tick_log.log_format import REALS, SIGNALS
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 

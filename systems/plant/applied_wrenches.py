@@ -15,7 +15,9 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics._core import get_no_witness_functions
+from drake_haptics.systems.framework.differentiable_system import (
+    get_no_witness_functions,
+)
 
 
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))

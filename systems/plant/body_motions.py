@@ -18,8 +18,10 @@ from pydrake.systems.framework import (
 )
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics._core import get_no_witness_functions
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.differentiable_system import (
+    export_parts,
+    get_no_witness_functions,
+)
 
 
 class BodyMotions(Diagram):

@@ -13,8 +13,11 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
-from drake_haptics._core import get_no_witness_functions, handle_slopes
+from drake_haptics._core import handle_slopes
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.framework.differentiable_system import (
+    get_no_witness_functions,
+)
 
 
 class HandleModel(LeafSystem):

@@ -16,13 +16,8 @@ namespace {
 
 PyObject* MakeEmptyList(PyObject*, PyObject*) { return PyList_New(0); }
 
-// Not by nanobind: pybind11 takes a plain C function for none of Python, keeps
-// in mind that the class of systems overrides nothing, and asks no more.
-PyMethodDef get_no_witness_functions = {
-    "get_no_witness_functions", &MakeEmptyList, METH_O,
-    "get_no_witness_functions(context)\n--\n\n"
-    "Returns nothing: the `DoGetWitnessFunctions` of a system without witness "
-    "functions."};
+PyMethodDef get_no_witness_functions = {"get_no_witness_functions",
+                                        &MakeEmptyList, METH_O, nullptr};
 
 }  // namespace
 
@@ -64,6 +59,16 @@ NB_MODULE(_core, m) {
   drake_haptics::BindToolLoop(m);
   drake_haptics::BindContactChain(m);
   drake_haptics::BindForeignContacts(m);
-  m.attr("get_no_witness_functions") =
-      nanobind::steal(PyCFunction_New(&get_no_witness_functions, nullptr));
+  m.def(
+      "make_witness_override",
+      [] {
+        return nanobind::steal(
+            PyCFunction_New(&get_no_witness_functions, nullptr));
+      },
+      nanobind::sig("def make_witness_override() -> "
+                    "collections.abc.Callable[[object], list]"),
+      "Returns the `DoGetWitnessFunctions` of a system without witness "
+      "functions. It is a built-in function: pybind11 takes one for none of "
+      "Python, keeps in mind that the class overrides nothing, and asks no "
+      "more.");
 }
