@@ -2436,6 +2436,17 @@ class ContactChain(SceneTracker):
             ValueError: a pose is not finite, or a gain is out of range.
         """
 
+    def find_force(self, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """
+        The wrench (6,) [torque; force] of the contacts on the tool at To, N·m and N, at its pose (7,) and spatial velocity (6,).
+        """
+
+    @property
+    def deepest(self) -> tuple[float, float]:
+        """
+        Least distance of the contacts that were asked for last (m, infinite without any), and the distance below which they push, m.
+        """
+
     def summarize(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[int, int, float, float]:
         """
         Numbers of contacts and of clusters, the least distance (m, infinite without contacts) and what the query took (s), of the tool in a state (13,).
@@ -2462,4 +2473,9 @@ def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), 
 
     Raises:
         ValueError: the columns do not match or are not ordered, a number is not finite, a normal is not of unit length, or an index is negative.
+    """
+
+def make_witness_override() -> Callable[[object], list]:
+    """
+    Returns the `DoGetWitnessFunctions` of a system without witness functions. It is a built-in function: pybind11 takes one for none of Python, keeps in mind that the class overrides nothing, and asks no more.
     """

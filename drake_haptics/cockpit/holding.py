@@ -116,6 +116,11 @@ class SoftStartDevice(DeviceBackend):
         """The device's."""
         return self.device.shows_force
 
+    @property
+    def uses_slopes(self) -> bool:
+        """The device's."""
+        return self.device.uses_slopes
+
     def read(self) -> DeviceReading | None:
         """Returns the newest reading; idle as long as it waits."""
         reading = self.device.read()

@@ -158,6 +158,11 @@ class DeviceBackend(ABC):
         """Whether it can show any; a mouse cannot."""
         return True
 
+    @property
+    def uses_slopes(self) -> bool:
+        """Whether it uses the slopes of a command; no loop computes them else."""
+        return False
+
     @abstractmethod
     def read(self) -> DeviceReading | None:
         """Returns the newest reading; None before the first has come."""

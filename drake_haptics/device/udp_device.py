@@ -92,6 +92,11 @@ class UdpDevice(DeviceBackend):
             self._reading = last = _to_reading(state, gate, fault)
         return last
 
+    @property
+    def uses_slopes(self) -> bool:
+        """Its servo shows them between two ticks."""
+        return True
+
     def write(self, command: DeviceCommand) -> None:
         """Asks for a wrench from now on; the first call also enables the device."""
         self._servo.publish(

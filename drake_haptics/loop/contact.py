@@ -91,7 +91,7 @@ def add_contact_systems(
         enable_load_shedding: Whether query and clustering take the `load_shedding` of a
             `LoadShedding`.
         enable_chain: Whether the query has the port `contact_chain`; see `can_chain`.
-        warns_deep: Whether the clustering warns of a deep contact itself.
+        warns_deep: Whether the systems warn of a deep contact themselves.
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there
@@ -123,36 +123,34 @@ def add_contact_systems(
         sample, advance = _add_advance(
             builder, query, tool, objects, 1.0 / contact.query_rate_hz
         )
-    systems = ContactSystems(
-        contact_query=query,
-        contact_clustering=builder.AddNamedSystem(
-            "contact_clustering",
-            ContactClustering(
-                cast(ClusteringMethod, contact.clustering),
-                contact.tolerance_m,
-                contact.cluster_size_m,
-                enable_load_shedding=enable_load_shedding,
-                warns_deep=warns_deep,
-            ),
+    clustering = builder.AddNamedSystem(
+        "contact_clustering",
+        ContactClustering(
+            cast(ClusteringMethod, contact.clustering),
+            contact.tolerance_m,
+            contact.cluster_size_m,
+            enable_load_shedding=enable_load_shedding,
+            warns_deep=warns_deep,
         ),
-        penalty_force=builder.AddNamedSystem(
-            "penalty_force",
-            PenaltyForce(
-                objects,
-                gains.stiffness_N_per_m.tolist(),
-                gains.damping_Ns_per_m.tolist(),
-            ),
+    )
+    force = builder.AddNamedSystem(
+        "penalty_force",
+        PenaltyForce(
+            objects,
+            gains.stiffness_N_per_m.tolist(),
+            gains.damping_Ns_per_m.tolist(),
+            enable_chain=enable_chain,
+            warn_of_depth=clustering.warn_of_depth if warns_deep else None,
         ),
-        pose_sampler=sample,
-        contact_extrapolator=advance,
     )
     if enable_chain:
-        for system, name in [
-            (systems.contact_clustering, "rule"),
-            (systems.penalty_force, "gains"),
+        for source, system, name in [
+            (clustering, query, "rule"),
+            (force, query, "gains"),
+            (query, force, "contact_chain"),
         ]:
-            builder.Connect(system.GetOutputPort(name), query.GetInputPort(name))
-    return systems
+            builder.Connect(source.GetOutputPort(name), system.GetInputPort(name))
+    return ContactSystems(query, clustering, force, sample, advance)
 
 
 def can_chain(

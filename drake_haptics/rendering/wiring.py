@@ -9,7 +9,11 @@ from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Demultiplexer, Multiplexer, ZeroOrderHold
 
 from drake_haptics import _core
-from drake_haptics.loop.contact import add_contact_systems, find_contact_gains
+from drake_haptics.loop.contact import (
+    add_contact_systems,
+    can_chain,
+    find_contact_gains,
+)
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.proxy import make_proxy_step
@@ -103,6 +107,7 @@ class RenderingWiring:
             effects,
             materials,
             period_s,
+            enable_chain=can_chain(self._objects, contact, effects),
             warns_deep=True,
         )
         force = found.penalty_force

@@ -179,11 +179,11 @@ def _make_monitor(
     measure: Callable[[Context, float], None],
     on_tick: Callable[[Context], bool | None] | None,
     pace: RealTimePacer | None,
-) -> Callable[[Context], EventStatus]:
+) -> Callable[[Context], EventStatus | None]:
     """Returns what the simulator calls after each tick."""
     start_s = time.perf_counter()
 
-    def monitor(context: Context) -> EventStatus:
+    def monitor(context: Context) -> EventStatus | None:
         nonlocal start_s
         now_s = time.perf_counter()
         measure(context, now_s - start_s)
@@ -197,7 +197,7 @@ def _make_monitor(
             pace.wait()
             # Waiting belongs to no tick.
             start_s += time.perf_counter() - now_s
-        return EventStatus.Succeeded()
+        return None
 
     return monitor
 

@@ -191,12 +191,18 @@ class ContactClustering(DifferentiableSystem):
         rule = context.get_abstract_parameter(self._rule).get_value()
         contacts = self._eval_contacts(context)
         if self._warns_deep:
-            self._warn_of_depth(contacts, rule.tolerance_m)
+            self.warn_of_depth(contacts.least_distance, rule.tolerance_m)
         clusters.set_value(_cluster(contacts, rule.tolerance_m, rule.delta_m))
 
-    def _warn_of_depth(self, contacts: ContactSet, tolerance_m: float) -> None:
-        """Warns of a deep contact, the first time."""
-        if question := question_depth(-contacts.least_distance, tolerance_m):
+    def warn_of_depth(self, least_distance_m: float, tolerance_m: float) -> None:
+        """Warns of a contact that is deeper than ten tolerances, the first time.
+
+        Args:
+            least_distance_m: Of the deepest contact, m.
+            tolerance_m: The distance below which contacts push, m.
+        """
+        question = question_depth(-least_distance_m, tolerance_m)
+        if self._warns_deep and question:
             self._warns_deep = False
             # Drake calls this: which of the user's lines it was is not known.
             warnings.warn(question, SceneWarning, stacklevel=1)

@@ -95,6 +95,7 @@ class PenaltyForce(DifferentiableSystem):
         - V_WT
         - X_WO_<name of each object that moves>
         - V_WO_<name of each object that moves>
+        - contact_chain (with the chain)
         output_ports:
         - wrench_model
         - F_To_W
@@ -106,6 +107,8 @@ class PenaltyForce(DifferentiableSystem):
     velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
 
     * `clusters` is a `drake_haptics._core.ClusterSet`.
+    * `contact_chain` is that of `ContactQuery`. With it the core finds the contacts of
+      `F_To_W`, to the same bits as those of `clusters`.
     * `wrench_model` (78) is [F; K; B]: the wrench on the tool at its origin in the
       world, N·m and N, and its 6 x 6 stiffness and damping, row-major, with
       F(δ, V + dV) ≈ F - K δ - B dV, δ = [rotation vector; translation] of the tool.
@@ -123,13 +126,16 @@ class PenaltyForce(DifferentiableSystem):
     `set_gains`. The output `gains` shows it, and has no value under AutoDiffXd.
     """
 
-    undifferentiated = frozenset({"gains"})
+    undifferentiated = frozenset({"gains", "contact_chain"})
 
     def __init__(
         self,
         objects: Sequence[ContactObject],
         stiffness_N_per_m: Sequence[float],
         damping_Ns_per_m: Sequence[float],
+        *,
+        enable_chain: bool = False,
+        warn_of_depth: Callable[[float, float], None] | None = None,
     ):
         """Constructs the system.
 
@@ -137,6 +143,9 @@ class PenaltyForce(DifferentiableSystem):
             objects: Those of the `ContactQuery`, in the same order.
             stiffness_N_per_m: k of each object, N/m, in a Context that says no other.
             damping_Ns_per_m: k_v of each object, N·s/m, the same.
+            enable_chain: Whether there is the port `contact_chain`.
+            warn_of_depth: That of `ContactClustering`, which the chain goes past, where
+                it is to warn.
 
         Raises:
             ValueError: A gain is negative or not finite, or there is not one for
@@ -158,7 +167,14 @@ class PenaltyForce(DifferentiableSystem):
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_inputs
         )
-        self.DeclareVectorOutputPort("F_To_W", 6, self._calc_F_To_W, from_inputs)
+        calc_F_To_W = self._calc_F_To_W
+        if enable_chain:
+            self._eval_chain = self.DeclareAbstractInputPort(
+                "contact_chain", Value[object]()
+            ).Eval
+            self._warn_of_depth = warn_of_depth
+            calc_F_To_W = self._calc_chained_F_To_W
+        self.DeclareVectorOutputPort("F_To_W", 6, calc_F_To_W, from_inputs)
         self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
         if self._moving:
             self.DeclareVectorOutputPort(
@@ -261,6 +277,14 @@ class PenaltyForce(DifferentiableSystem):
 
     def _calc_F_To_W(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._eval_wrench(context).F_To_W)
+
+    def _calc_chained_F_To_W(self, context: Context, output: BasicVector) -> None:
+        chain = self._eval_chain(context)
+        output.set_value(
+            chain.find_force(self._eval_X_WT(context), self._eval_V_WT(context))
+        )
+        if self._warn_of_depth is not None:
+            self._warn_of_depth(*chain.deepest)
 
     def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
         wrench = self._eval_wrench(context)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydrake.common.value import Value
+from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     Context,
     Diagram,
     DiagramBuilder,
-    EventStatus,
     LeafSystem,
     State,
 )
@@ -19,7 +18,13 @@ from pydrake.systems.framework import (
 from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
-from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceReading,
+    Fault,
+    GateState,
+)
 from drake_haptics.systems.framework.differentiable_system import (
     export_parts,
     get_no_witness_functions,
@@ -39,7 +44,7 @@ class DeviceIo(Diagram):
         name: DeviceIo
         input_ports:
         - F_Ho_W_rendered
-        - handle_slopes
+        - handle_slopes (if the backend uses it)
         output_ports:
         - X_WH
         - V_WH
@@ -53,9 +58,9 @@ class DeviceIo(Diagram):
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
     * `reading` (abstract) is the `DeviceReading` that both are of.
 
-    The state is one discrete group (13), [X_WH; V_WH], and the reading, both replaced
-    by an unrestricted update every period from 0 s on. It raises FloatingPointError
-    where a reading is not finite.
+    The state is two discrete groups, [X_WH; V_WH] (13) and the numbers of the reading
+    (24), both replaced by an unrestricted update every period from 0 s on. It raises
+    FloatingPointError where a reading is not finite.
     """
 
     def __init__(
@@ -80,36 +85,15 @@ class DeviceIo(Diagram):
         check_positive(period_s=period_s)
         builder = DiagramBuilder()
         exchange = builder.AddNamedSystem(
-            "exchange", _Exchange(backend, _Frame(X_WB), period_s, first_reading)
+            "exchange", _Exchange(backend, X_WB, period_s, first_reading)
         )
-        for name in ("F_Ho_W_rendered", "handle_slopes"):
-            builder.ExportInput(exchange.GetInputPort(name), name)
+        for port in map(exchange.get_input_port, range(exchange.num_input_ports())):
+            builder.ExportInput(port, port.get_name())
         export_parts(
             builder, exchange.GetOutputPort("handle_state"), {"X_WH": 7, "V_WH": 6}
         )
         builder.ExportOutput(exchange.GetOutputPort("reading"), "reading")
         builder.BuildInto(self)
-
-
-class _Frame:
-    """What is said in a device's base frame, in the world, and back."""
-
-    def __init__(self, X_WB: RigidTransform):
-        self._from_base = FrameChange(pose_to_vector(X_WB))
-
-    def to_world(self, reading: DeviceReading) -> np.ndarray:
-        """Returns [X_WH; V_WH] (13,)."""
-        return self._from_base.change_motion(reading.X_BH, reading.V_BH)
-
-    def to_base(
-        self, F_W: np.ndarray, slopes_W: np.ndarray | None, at: DeviceReading
-    ) -> DeviceCommand:
-        """Returns a command for the handle that was read."""
-        F_B = self._from_base.change_wrench_back(F_W)
-        if slopes_W is None:
-            return DeviceCommand(F_B, at.X_BH, at.V_BH)
-        K_B, B_B = self._from_base.change_slopes_back(slopes_W)
-        return DeviceCommand(F_B, at.X_BH, at.V_BH, K_B, B_B)
 
 
 class _Exchange(LeafSystem):
@@ -120,19 +104,32 @@ class _Exchange(LeafSystem):
     def __init__(
         self,
         backend: DeviceBackend,
-        frame: _Frame,
+        X_WB: RigidTransform,
         period_s: float,
         first_reading: DeviceReading,
     ):
         super().__init__()
         self._backend = backend
-        self._frame = frame
-        self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
-        self._slopes = self.DeclareVectorInputPort("handle_slopes", 72)
-        handle_state = self.DeclareDiscreteState(frame.to_world(first_reading))
-        self._reading = self.DeclareAbstractState(Value[object](first_reading))
-        self.DeclareStateOutputPort("handle_state", handle_state)
-        self.DeclareStateOutputPort("reading", self._reading)
+        self._frame = FrameChange(pose_to_vector(X_WB))
+        self._eval_F_Ho_W_rendered = self.DeclareVectorInputPort(
+            "F_Ho_W_rendered", 6
+        ).Eval
+        self._slopes = (
+            self.DeclareVectorInputPort("handle_slopes", 72)
+            if backend.uses_slopes
+            else None
+        )
+        motion = self._frame.change_motion(first_reading.X_BH, first_reading.V_BH)
+        self.DeclareStateOutputPort("handle_state", self.DeclareDiscreteState(motion))
+        # Drake copies the state twice a tick: numbers take a tenth of what an object
+        # of Python takes.
+        self._reading = self.DeclareDiscreteState(_to_vector(first_reading))
+        self.DeclareAbstractOutputPort(
+            "reading",
+            Value[object],
+            self._calc_reading,
+            {self.discrete_state_ticket(self._reading)},
+        )
         # Unrestricted updates come before all discrete ones of the same time.
         self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._read)
         # Publish events come after the updates of a tick and the step to the next, but
@@ -143,25 +140,55 @@ class _Exchange(LeafSystem):
         reading = self._backend.read()
         if reading is None:
             return
-        motion = self._frame.to_world(reading)
+        motion = self._frame.change_motion(reading.X_BH, reading.V_BH)
         if not math.isfinite(sum(motion.tolist())):
             raise FloatingPointError("the device's reading is not finite")
-        state.get_mutable_discrete_state().set_value(motion)
-        state.get_mutable_abstract_state(int(self._reading)).set_value(reading)
+        groups = state.get_mutable_discrete_state()
+        groups.set_value(0, motion)
+        groups.set_value(1, _to_vector(reading))
 
-    def _write(self, context: Context) -> EventStatus:
-        slopes = self._read_slopes(context)
-        reading = context.get_abstract_state(int(self._reading)).get_value()
+    def _write(self, context: Context) -> None:
+        numbers = context.get_discrete_state(self._reading).CopyToVector()
+        F_W = self._eval_F_Ho_W_rendered(context)
         self._backend.write(
-            self._frame.to_base(self._F_Ho_W_rendered.Eval(context), slopes, reading)
-        )
-        return EventStatus.Succeeded()
-
-    def _read_slopes(self, context: Context) -> np.ndarray | None:
-        try:
-            return self._slopes.Eval(context)
-        except RuntimeError:
-            # To ask first would take as long as to read, at every tick.
-            return (
-                self._slopes.Eval(context) if self._slopes.HasValue(context) else None
+            DeviceCommand(
+                self._frame.change_wrench_back(F_W),
+                numbers[:7],
+                numbers[7:13],
+                *self._calc_slopes(context),
             )
+        )
+
+    def _calc_slopes(self, context: Context) -> tuple[np.ndarray, ...]:
+        """Returns K_B and B_B, or nothing where nobody uses or tells them."""
+        if self._slopes is None or not self._slopes.HasValue(context):
+            return ()
+        return self._frame.change_slopes_back(self._slopes.Eval(context))
+
+    def _calc_reading(self, context: Context, reading: AbstractValue) -> None:
+        numbers = context.get_discrete_state(self._reading).CopyToVector()
+        sequence, time_s, buttons, gate, fault = numbers[19:].tolist()
+        reading.set_value(
+            DeviceReading(
+                int(sequence),
+                time_s,
+                numbers[:7],
+                numbers[7:13],
+                numbers[13:19],
+                int(buttons),
+                GateState(gate),
+                Fault(fault),
+            )
+        )
+
+
+def _to_vector(reading: DeviceReading) -> np.ndarray:
+    """Returns the numbers (24,) of a reading."""
+    told = (
+        reading.sequence,
+        reading.time_s,
+        reading.buttons,
+        reading.gate,
+        reading.fault,
+    )
+    return np.concatenate([reading.X_BH, reading.V_BH, reading.F_Ho_B, told])

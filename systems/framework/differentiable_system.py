@@ -15,7 +15,6 @@ from pydrake.autodiffutils import (
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector_,
-    Context,
     Context_,
     DiagramBuilder,
     DiscreteValues_,
@@ -25,23 +24,15 @@ from pydrake.systems.framework import (
     LeafSystem_,
     OutputPort,
     PortDataType,
-    WitnessFunction,
 )
 from pydrake.systems.primitives import Demultiplexer, Multiplexer
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics._core import AutoDiffVector
+from drake_haptics._core import AutoDiffVector, make_witness_override
 
-
-def get_no_witness_functions(
-    self: LeafSystem, context: Context
-) -> list[WitnessFunction]:
-    """Returns nothing: the override of a system without witness functions.
-
-    After each unrestricted update Drake asks every Python system for its witness
-    functions, and not to find the override takes longer than to call it.
-    """
-    return []
+# Of a system without witness functions. After each unrestricted update Drake asks every
+# Python system for them, and not to find the override takes longer than to call it.
+get_no_witness_functions = make_witness_override()
 
 
 class AutoDiffPoint:

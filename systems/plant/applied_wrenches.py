@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -27,13 +28,18 @@ def AppliedWrenches_(T: type) -> type:
     # Not left to the default, which is not a number for AutoDiffXd.
     p_BoBo_B = np.array([T(0.0)] * 3)
 
-    def make_force(body: BodyIndex, F_Bo_W: Any) -> Any:
-        """Returns a wrench (6) on a body at its origin as what the plant takes."""
+    def make_force(body: BodyIndex) -> Any:
+        """Returns no force on a body at its origin as what the plant takes."""
         force = AppliedForce()
         force.body_index = body
         force.p_BoBq_B = p_BoBo_B
-        force.F_Bq_W = SpatialForce(F_Bo_W)
         return force
+
+    def apply(force: Any, F_Bo_W: Any) -> Any:
+        """Returns a wrench (6) in place of the one of a force."""
+        applied = copy(force)
+        applied.F_Bq_W = SpatialForce(F_Bo_W)
+        return applied
 
     class Impl(LeafSystem_[T]):
         """Sums wrenches on the tool and on objects, each at its body's origin.
@@ -78,13 +84,14 @@ def AppliedWrenches_(T: type) -> type:
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self._bodies = [tool, *objects]
+            self._forces = [make_force(body) for body in self._bodies]
             self._names = (tuple(tool_wrenches), tuple(object_wrenches))
-            self._on_tool = [
-                self.DeclareVectorInputPort(f"F_To_W_{name}", 6)
+            self._eval_on_tool = [
+                self.DeclareVectorInputPort(f"F_To_W_{name}", 6).Eval
                 for name in tool_wrenches
             ]
-            self._on_objects = [
-                self.DeclareVectorInputPort(f"F_O_W_{name}", 6 * len(objects))
+            self._eval_on_objects = [
+                self.DeclareVectorInputPort(f"F_O_W_{name}", 6 * len(objects)).Eval
                 for name in object_wrenches
             ]
             self.DeclareAbstractOutputPort(
@@ -100,16 +107,18 @@ def AppliedWrenches_(T: type) -> type:
             Impl._construct(self, tool, on_tool, objects, on_objects, converter)
 
         def _calc_forces(self, context: Any, forces: AbstractValue) -> None:
-            on_tool = sum(port.Eval(context) for port in self._on_tool)
-            on_objects = sum(port.Eval(context) for port in self._on_objects)
+            on_tool = sum(eval_wrench(context) for eval_wrench in self._eval_on_tool)
+            on_objects = sum(
+                eval_wrench(context) for eval_wrench in self._eval_on_objects
+            )
             wrenches = [on_tool]
             wrenches += [
                 on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
             ]
             forces.set_value(
                 [
-                    make_force(body, F_Bo_W)
-                    for body, F_Bo_W in zip(self._bodies, wrenches, strict=True)
+                    apply(force, F_Bo_W)
+                    for force, F_Bo_W in zip(self._forces, wrenches, strict=True)
                 ]
             )
 

@@ -21,6 +21,8 @@ def make_reading(
 class ScriptedDevice(DeviceBackend):
     """Reads what a function of the call's number returns; keeps what is written."""
 
+    uses_slopes = True
+
     def __init__(self, script=lambda k: make_reading(k)):
         self._script = script
         self.reads = 0

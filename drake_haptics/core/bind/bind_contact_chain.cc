@@ -1,11 +1,11 @@
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
-#include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bind/bind.h"
@@ -71,6 +71,16 @@ class TrackedChain : public SceneTracker {
     return out;
   }
 
+  Vec6 FindForce(const PoseVector& q_WT, const Vec6& V_WT) {
+    return FindWrench({q_WT, V_WT}).F;
+  }
+
+  // The least distance, and that below which contacts push.
+  std::pair<double, double> FindDeepest() const {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    return {chain_.least_distance(), chain_.tolerance_of_law()};
+  }
+
   // Contacts, clusters, the least distance and what the query took.
   std::tuple<std::size_t, int, double, double> Summarize(
       const StateVector& state) {
@@ -78,12 +88,8 @@ class TrackedChain : public SceneTracker {
     Refresh();
     chain_.FindWrench({state.head<7>(), state.tail<6>()}, &tracker_);
     const ContactSet& found = chain_.contacts();
-    double least = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : found.contacts) {
-      least = std::min(least, contact.distance);
-    }
-    return {found.contacts.size(), chain_.num_clusters(), least,
-            found.query_seconds};
+    return {found.contacts.size(), chain_.num_clusters(),
+            chain_.least_distance(), found.query_seconds};
   }
 
   Eigen::Matrix<double, 72, 1> FindHandleSlopes(
@@ -171,6 +177,14 @@ void BindContactChain(nb::module_& m) {
            "    others: (78,) wrench models.\n\n"
            "Raises:\n    ValueError: a pose is not finite, or a gain is out of "
            "range.")
+      .def("find_force", &TrackedChain::FindForce, nb::arg("X_WT"),
+           nb::arg("V_WT"),
+           "The wrench (6,) [torque; force] of the contacts on the tool at To, "
+           "N·m and N, at its pose (7,) and spatial velocity (6,).")
+      .def_prop_ro("deepest", &TrackedChain::FindDeepest,
+                   "Least distance of the contacts that were asked for last "
+                   "(m, infinite without any), and the distance below which "
+                   "they push, m.")
       .def(
           "summarize", &TrackedChain::Summarize, nb::arg("state"),
           "Numbers of contacts and of clusters, the least distance (m, "

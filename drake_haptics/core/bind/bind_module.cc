@@ -12,6 +12,15 @@ void drake_haptics::ImportNumpy() {
   };
 }
 
+namespace {
+
+PyObject* MakeEmptyList(PyObject*, PyObject*) { return PyList_New(0); }
+
+PyMethodDef get_no_witness_functions = {"get_no_witness_functions",
+                                        &MakeEmptyList, METH_O, nullptr};
+
+}  // namespace
+
 NB_MODULE(_core, m) {
   m.doc() =
       "The compiled core of drake_haptics: geometry, contact query, clustering "
@@ -50,4 +59,16 @@ NB_MODULE(_core, m) {
   drake_haptics::BindToolLoop(m);
   drake_haptics::BindContactChain(m);
   drake_haptics::BindForeignContacts(m);
+  m.def(
+      "make_witness_override",
+      [] {
+        return nanobind::steal(
+            PyCFunction_New(&get_no_witness_functions, nullptr));
+      },
+      nanobind::sig("def make_witness_override() -> "
+                    "collections.abc.Callable[[object], list]"),
+      "Returns the `DoGetWitnessFunctions` of a system without witness "
+      "functions. It is a built-in function: pybind11 takes one for none of "
+      "Python, keeps in mind that the class overrides nothing, and asks no "
+      "more.");
 }

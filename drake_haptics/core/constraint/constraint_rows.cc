@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <map>
-#include <stdexcept>
 #include <utility>
 
 #include "pair/pair_contact_builders.h"
@@ -52,26 +50,20 @@ ConstraintRows::ConstraintRows(
     std::shared_ptr<const Decomposition> tool,
     std::vector<std::shared_ptr<const Decomposition>> objects,
     std::vector<double> skin)
-    : skin_(std::move(skin)),
-      deadlines_(static_cast<int>(objects.size())),
-      marks_(objects.size(), -kForever),
-      overlaps_(tool, objects, Largest(skin_)) {
-  std::map<const Decomposition*, TreedShape> shapes;
-  const auto shape_of = [&](std::shared_ptr<const Decomposition> pieces) {
-    TreedShape& shape = shapes[pieces.get()];
-    if (shape.tree == nullptr) {
-      shape.tree = std::make_shared<PieceBvh>(pieces->pieces);
-      shape.decomposition = std::move(pieces);
-    }
-    return shape;
-  };
-  tool_ = shape_of(std::move(tool));
+    : ConstraintRows(BuildTrees(tool, objects), std::move(skin)) {}
+
+ConstraintRows::ConstraintRows(TreedScene scene, std::vector<double> skin)
+    : tool_(scene.tool),
+      skin_(std::move(skin)),
+      deadlines_(static_cast<int>(scene.objects.size())),
+      marks_(scene.objects.size(), -kForever),
+      overlaps_(scene, Largest(skin_)) {
   const Box box = tool_.tree->bounds();
   middle_ = box.center;
   radius_ = box.half.norm();
-  objects_.reserve(objects.size());
-  for (auto& pieces : objects) {
-    objects_.push_back({NearPieces(shape_of(std::move(pieces))), {}, {}});
+  objects_.reserve(scene.objects.size());
+  for (TreedShape& shape : scene.objects) {
+    objects_.push_back({NearPieces(std::move(shape)), {}, {}});
   }
 }
 

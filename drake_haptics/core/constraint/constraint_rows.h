@@ -106,6 +106,8 @@ class ConstraintRows {
   void Reset();
 
  private:
+  ConstraintRows(TreedScene scene, std::vector<double> skin);
+
   struct Object {
     NearPieces near;
     Pose X_WO;

@@ -1,6 +1,8 @@
 #include "tool/contact_chain.h"
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -22,6 +24,21 @@ void ContactChain::SetLaw(ContactLaw law) {
   has_wrench_ = false;
 }
 
+const ContactLaw& ContactChain::law() const {
+  if (!law_.has_value()) {
+    throw std::logic_error("contacts push by a law, which was not set");
+  }
+  return *law_;
+}
+
+double ContactChain::least_distance() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Contact& contact : contacts_.contacts) {
+    least = std::min(least, contact.distance);
+  }
+  return least;
+}
+
 void ContactChain::Forget() { has_contacts_ = has_wrench_ = false; }
 
 const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
@@ -39,20 +56,18 @@ const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
 
 const WrenchModel& ContactChain::FindWrench(const ToolState& tool,
                                             ContactTracker* tracker) {
-  if (!law_.has_value()) {
-    throw std::logic_error("contacts push by a law, which was not set");
-  }
+  const ContactLaw& law = this->law();
   const ContactSet& found =
       FindContacts(tool.q_WT, tracker->tolerance(), tracker);
   if (has_wrench_ && IsSame(tool.V_WT, V_WT_)) return wrench_;
   has_wrench_ = false;
-  if (law_->delta.has_value()) {
-    ClusterContacts(found.contacts, *law_->delta, law_->tolerance, &clusters_);
+  if (law.delta.has_value()) {
+    ClusterContacts(found.contacts, *law.delta, law.tolerance, &clusters_);
   } else {
-    ShareStiffness(found.contacts, law_->tolerance, &clusters_);
+    ShareStiffness(found.contacts, law.tolerance, &clusters_);
   }
   wrench_ = ComputePenaltyWrench(clusters_, {tool.q_WT.tail<3>(), tool.V_WT},
-                                 law_->objects, law_->materials)
+                                 law.objects, law.materials)
                 .tool;
   V_WT_ = tool.V_WT;
   has_wrench_ = true;

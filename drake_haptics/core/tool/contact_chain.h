@@ -37,6 +37,13 @@ class ContactChain {
   /// Those that were asked for last.
   const ContactSet& contacts() const { return contacts_; }
 
+  /// Distance of the nearest of them, m; infinite without any.
+  double least_distance() const;
+
+  /// Those of them below it push, m.
+  /// @throws std::logic_error without a law.
+  double tolerance_of_law() const { return law().tolerance; }
+
   /// How many clusters these make at the wrench that was asked for last.
   int num_clusters() const {
     return static_cast<int>(clusters_.clusters.size());
@@ -47,6 +54,8 @@ class ContactChain {
   const WrenchModel& FindWrench(const ToolState& tool, ContactTracker* tracker);
 
  private:
+  const ContactLaw& law() const;
+
   std::optional<ContactLaw> law_;
   bool has_contacts_ = false;  // those of q_WT_ and tolerance_
   PoseVector q_WT_;

@@ -1,7 +1,6 @@
 #include "tracker/contact_tracker.h"
 
 #include <chrono>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -24,33 +23,25 @@ ContactTracker::ContactTracker(
     std::shared_ptr<const Decomposition> tool,
     std::vector<std::shared_ptr<const Decomposition>> objects, double tolerance,
     const DepthSearch& depth)
-    : tolerance_(tolerance),
+    : ContactTracker(BuildTrees(tool, objects), tolerance, depth) {}
+
+ContactTracker::ContactTracker(TreedScene scene, double tolerance,
+                               const DepthSearch& depth)
+    : tool_(std::move(scene.tool)),
+      tolerance_(tolerance),
       depth_(depth),
-      deadlines_(static_cast<int>(objects.size())) {
+      deadlines_(static_cast<int>(scene.objects.size())) {
   RequireNotNegative(tolerance, "tolerance");
   if (depth.max_walk_steps < 1) {
     throw std::invalid_argument("max_walk_steps must be at least 1, is " +
                                 std::to_string(depth.max_walk_steps));
   }
-  if (tool == nullptr) throw std::invalid_argument("the tool is missing");
-  std::map<const Decomposition*, TreedShape> shapes;
-  const auto shape_of = [&](std::shared_ptr<const Decomposition> pieces) {
-    TreedShape& shape = shapes[pieces.get()];
-    if (shape.tree == nullptr) {
-      shape.tree = std::make_shared<PieceBvh>(pieces->pieces);
-      shape.neighbors = std::make_shared<FacetNeighbors>(*pieces);
-      shape.decomposition = std::move(pieces);
-    }
-    return shape;
-  };
-  tool_ = shape_of(std::move(tool));
   const Box box = tool_.tree->bounds();
   middle_ = box.center;
   radius_ = box.half.norm();
-  objects_.reserve(objects.size());
-  for (auto& pieces : objects) {
-    if (pieces == nullptr) throw std::invalid_argument("an object is missing");
-    objects_.push_back({TrackedObject(shape_of(std::move(pieces))), {}, {}});
+  objects_.reserve(scene.objects.size());
+  for (TreedShape& shape : scene.objects) {
+    objects_.push_back({TrackedObject(std::move(shape)), {}, {}});
   }
 }
 

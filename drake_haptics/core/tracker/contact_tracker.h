@@ -30,6 +30,8 @@ class ContactTracker {
   ContactTracker(std::shared_ptr<const Decomposition> tool,
                  std::vector<std::shared_ptr<const Decomposition>> objects,
                  double tolerance, const DepthSearch& depth = {});
+  ContactTracker(TreedScene scene, double tolerance,
+                 const DepthSearch& depth = {});
 
   int num_objects() const { return static_cast<int>(objects_.size()); }
   double tolerance() const { return tolerance_; }

@@ -94,9 +94,12 @@ def test_slopes_are_turned_into_the_base_frame():
         np.testing.assert_allclose(in_base @ motion_B, F_B, atol=1e-13)
 
 
-def test_without_slopes_none_are_written():
+@pytest.mark.parametrize("uses_slopes", [False, True])
+def test_without_slopes_none_are_written(uses_slopes):
     backend = ScriptedDevice()
-    diagram, _ = make_diagram(backend)
+    backend.uses_slopes = uses_slopes
+    diagram, device = make_diagram(backend)
+    assert device.wants_slopes == uses_slopes
     Simulator(diagram).AdvanceTo(PERIOD)
     assert backend.commands[-1].K_B is None
     assert backend.commands[-1].B_B is None

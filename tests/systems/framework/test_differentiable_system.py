@@ -423,3 +423,11 @@ def test_the_page_names_the_systems_that_do_not_convert():
     page = (Path(__file__).parents[3] / "docs" / "gradients.md").read_text("utf-8")
     told = page.split("do not convert:")[1].split("\n\n")[0]
     assert set(re.findall(r"`(\w+)`", told)) == find_leaves_that_stay_doubles()
+
+
+def test_drake_finds_no_witness_functions_and_asks_no_python_for_them():
+    """pybind11 takes a built-in function as its own: it overrides nothing."""
+    assert inspect.isbuiltin(Sample.DoGetWitnessFunctions)
+    assert Sample.DoGetWitnessFunctions(None) == []
+    system = Sample()
+    assert system.GetWitnessFunctions(system.CreateDefaultContext()) == []
