@@ -10,6 +10,7 @@
 #include "bind/bind_columns.h"
 #include "bind/bind_pose.h"
 #include "bind/bind_real_array.h"
+#include "bind/bind_servo.h"
 #include "bind/bind_shapes.h"
 #include "bind/bind_turn.h"
 #include "constraint/constraint_step.h"
@@ -34,6 +35,11 @@ class SharedStepper {
 
   // For what never changes.
   const ConstraintStepper& constants() const { return stepper_; }
+
+  ConstraintStepper Copy() const {
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    return stepper_;
+  }
 
   void SetObjectPose(nb::handle place, nb::handle X_WO_value,
                      const Vec6& V_WO) {
@@ -85,11 +91,6 @@ class SharedStepper {
   static PoseVector CheckedPose(const PoseVector& q, const char* name) {
     PoseFromVector(q, name);
     return q;
-  }
-
-  ConstraintStepper Copy() const {
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
-    return stepper_;
   }
 
   mutable std::mutex mutex_;
@@ -162,6 +163,10 @@ void BindResult(nb::module_& m) {
 }
 
 }  // namespace
+
+ConstraintStepper CopyStepper(nb::handle stepper) {
+  return nb::cast<const SharedStepper&>(stepper).Copy();
+}
 
 void BindConstraintStep(nb::module_& m) {
   BindResult(m);

@@ -90,6 +90,9 @@ class ConstraintStepper {
   int num_objects() const { return rows_.num_objects(); }
   const Settings& settings() const { return settings_; }
 
+  /// Changes the coupling from the next tick on.
+  void SetGains(const CouplingGains& gains) { settings_.gains = gains; }
+
   /// Poses object i at the next tick's beginning, and tells how it moves in it.
   /// @param V_WO spatial velocity of its frame [rad/s; m/s].
   /// @throws std::out_of_range; std::invalid_argument for what is not finite.
