@@ -133,7 +133,8 @@ def BuildHapticDiagram(
         SceneError: A value is impossible, also in a scene that was made or changed
             in Python, or the hand's path cannot be reached.
         MeshError: A mesh cannot be treated.
-        DeviceError: The device says nothing.
+        DeviceError: The device says nothing, or has no servo for
+            `device.servo_rate_hz`.
         TypeError: An argument, or a value of the scene, is of another kind; the
             message names it.
     """
@@ -187,6 +188,9 @@ def BuildHapticDiagram(
         period_s=period_s,
         effects=scene.effects,
         materials=[item.material for item in scene.environment],
+        servo_period_s=(
+            scene.device.wrench_period_s if scene.device.servo_rate_hz else None
+        ),
     )
     if recorder is not None:
         from drake_haptics.loop.outputs import AddTickLog

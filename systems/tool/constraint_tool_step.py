@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +15,16 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
+    EventStatus,
     LeafSystem,
+    State,
     ValueProducer,
 )
 
 from drake_haptics._core import (
     ConstraintStepper,
     ConstraintStepResult,
+    ContactServo,
     ContactSet,
     ConvexPieces,
     CouplingGains,
@@ -112,7 +115,8 @@ class ConstraintToolStep(Diagram):
     * `coupling` (78) is that of `VirtualCoupling`.
 
     The state is one discrete group (13), [X_WT; V_WT], updated every period from 0 s
-    on. What the search knows from the last tick is the memory of a Context, and never
+    on, or read from a servo that steps the tool; it is told at the end of each tick
+    that the loop goes on. What the search knows from the last tick is the memory of a Context, and never
     changes an answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
@@ -130,6 +134,9 @@ class ConstraintToolStep(Diagram):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str] = (),
+        *,
+        servo_period_s: float | None = None,
+        start_servo: Callable[[ConstraintStepper], ContactServo] | None = None,
     ):
         """Constructs the system.
 
@@ -143,6 +150,10 @@ class ConstraintToolStep(Diagram):
             X_WT: Default pose; the tool starts at rest.
             period_s: The tick, s.
             wrench_names: A name for each input of another wrench.
+            servo_period_s: How often the tool is stepped between ticks, s. Defaults to
+                at every tick. Nothing moves but it and the handle then.
+            start_servo: Starts a thread that steps the tool instead, by a stepper of
+                that period. The state is that thread's at each tick then.
 
         Raises:
             ValueError: The period or a skin is not positive, there is not one for each
@@ -171,6 +182,8 @@ class ConstraintToolStep(Diagram):
                 X_WT,
                 period_s,
                 wrench_names,
+                servo_period_s,
+                start_servo,
             ),
         )
         step = self._step
@@ -243,6 +256,8 @@ class _ConstraintStep(LeafSystem):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str],
+        servo_period_s: float | None,
+        start_servo: Callable[[ConstraintStepper], ContactServo] | None,
     ):
         super().__init__()
         self._q_HT = pose_to_vector(X_HT)
@@ -250,7 +265,7 @@ class _ConstraintStep(LeafSystem):
         self._objects = tuple(objects)
         self._skin_m = np.array(skin_m, dtype=float)
         self._dynamics = dynamics
-        self._period_s = period_s
+        self._period_s = servo_period_s or period_s
         # Wrong arguments are refused here, and not at the first tick.
         self._make_stepper(gains)
         self._gains = self.DeclareAbstractParameter(Value[object](gains))
@@ -322,7 +337,16 @@ class _ConstraintStep(LeafSystem):
             self._calc_wrench_model,
             from_all,
         )
-        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+        if start_servo is None:
+            self.DeclarePeriodicDiscreteUpdateEvent(self._period_s, 0.0, self._update)
+            return
+        if self._motions:
+            raise ValueError("a servo steps a tool among objects that rest")
+        self._servo = start_servo(self._make_stepper(gains))
+        # As `DeviceIo` does: read before all updates, and say at the end of a tick that
+        # the loop goes on.
+        self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._follow)
+        self.DeclarePeriodicPublishEvent(period_s, 0.0, self._renew)
 
     def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
         stepper = ConstraintStepper(
@@ -349,19 +373,23 @@ class _ConstraintStep(LeafSystem):
         for i, (X_WO, V_WO) in self._motions.items():
             stepper.set_object_pose(i, X_WO.Eval(context), V_WO.Eval(context))
         state = context.get_discrete_state_vector().value()
-        F_To_W = np.zeros(6)
-        for port in self._wrenches:
-            if port.HasValue(context):
-                F_To_W += port.Eval(context)[:6]
         value.set_value(
             stepper.step(
                 state[:7],
                 state[7:],
                 self._X_WH.Eval(context),
                 self._V_WH.Eval(context),
-                F_To_W,
+                self._sum_wrenches(context),
             )
         )
+
+    def _sum_wrenches(self, context: Context) -> np.ndarray:
+        """Returns (6,) what else pushes the tool, [τ; f] at To in the world."""
+        F_To_W = np.zeros(6)
+        for port in self._wrenches:
+            if port.HasValue(context):
+                F_To_W += port.Eval(context)[:6]
+        return F_To_W
 
     def _eval_result(self, context: Context) -> ConstraintStepResult:
         return self._result.Eval(context)
@@ -369,6 +397,14 @@ class _ConstraintStep(LeafSystem):
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         result = self._eval_result(context)
         next_state.set_value(np.concatenate([result.q_WT, result.V_WT]))
+
+    def _follow(self, context: Context, state: State) -> None:
+        state.get_mutable_discrete_state().set_value(self._servo.tool_state)
+
+    def _renew(self, context: Context) -> EventStatus:
+        gains = context.get_abstract_parameter(self._gains).get_value()
+        self._servo.renew(gains, self._sum_wrenches(context))
+        return EventStatus.Succeeded()
 
     def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
         output.set_value(self._eval_result(context).F_Ho_W_commanded)

@@ -136,6 +136,8 @@ void BindThread(nb::module_& m) {
            "other wrenches (6,) on the tool at To in W, its weight among them. "
            "Where this is not called in time, the servo releases as its law "
            "says.")
+      .def("set_share", &PythonContactServo::SetShare, nb::arg("share"),
+           "Shows that part of the wrench, 0 to 1, from the next `renew` on.")
       .def_prop_ro(
           "tool_state",
           [](PythonContactServo& self) { return ToVector(self.tool()); },

@@ -47,7 +47,8 @@ void ContactServo::Renew(const CouplingGains& gains, const Vec6& F_applied) {
       gains.stiffness,          gains.damping,   gains.rotational_stiffness,
       gains.rotational_damping, gains.max_force, gains.max_torque};
   std::copy_n(F_applied.data(), 6, load.data() + 6);
-  load[12] = servo_->Now();
+  load[12] = share_;
+  load[13] = servo_->Now();
   load_box_.Write(load);
 }
 
@@ -88,11 +89,14 @@ void ContactServo::Serve() {
 void ContactServo::Solve() {
   tool_.SetGains({load_[0], load_[1], load_[2], load_[3], load_[4], load_[5]});
   try {
-    const LocalWrench wrench =
+    LocalWrench wrench =
         tool_.Step(Eigen::Map<const PoseVector>(handle_.X.data()),
                    Eigen::Map<const Vec6>(handle_.V.data()),
                    Eigen::Map<const Vec6>(load_.data() + 6));
-    servo_->Publish(wrench, load_[12]);
+    wrench.F *= load_[12];
+    wrench.K *= load_[12];
+    wrench.B *= load_[12];
+    servo_->Publish(wrench, load_[13]);
     ++report_.num_solved;
   } catch (const std::invalid_argument&) {
     // Not a pose: what was published before holds, and is released.

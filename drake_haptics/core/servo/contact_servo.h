@@ -41,6 +41,10 @@ class ContactServo {
   /// @param F_applied other wrenches on the tool at To in W.
   void Renew(const CouplingGains& gains, const Vec6& F_applied);
 
+  /// Part of the wrench that is shown, from the next `Renew` on; 1 at first.
+  /// The thread of `Renew` only.
+  void SetShare(double share) { share_ = share; }
+
   /// The tool, newest. One thread only.
   ToolState tool();
 
@@ -51,8 +55,9 @@ class ContactServo {
   void Close();
 
  private:
-  // Gains, F_applied, time; pose and velocity: plain memory crosses threads.
-  using PlainLoad = std::array<double, 6 + 6 + 1>;
+  // Gains, F_applied, share, time; pose and velocity: plain memory crosses
+  // threads.
+  using PlainLoad = std::array<double, 6 + 6 + 1 + 1>;
   using PlainTool = std::array<double, 7 + 6>;
 
   void Run();
@@ -71,7 +76,8 @@ class ContactServo {
   Seqlock<PlainTool> tool_box_;
   Seqlock<ContactServoStatus> status_box_;
 
-  // Of the one thread that reads.
+  // Of the one thread that renews and reads.
+  double share_ = 1;
   PlainTool read_tool_{};
   std::uint64_t tool_seen_ = 0;
   ContactServoStatus status_;

@@ -17,9 +17,8 @@ constexpr double kPeriod = 2.5e-4;
 const Vec6 kStill = Vec6::Zero();
 
 ServoTool Pressed(double depth, const PoseVector& q_WB) {
-  ServoTool tool(MakeStepper(kPeriod), q_WB, {Above(kRest + 1e-3), kStill});
-  const FrameChange base(q_WB);
-  for (int i = 0; i < 2000; ++i) {
+  ServoTool tool(MakeStepper(kPeriod), q_WB, {Above(kRest), kStill});
+  for (int i = 0; i < 300; ++i) {
     // The handle in a base that is not turned: places differ by its own.
     PoseVector q_BH = Above(kRest - depth);
     q_BH.tail<3>() -= q_WB.tail<3>();
@@ -34,11 +33,11 @@ void StepsAsTheStepperDoes() {
   ServoTool tool(stepper, PoseVector::Unit(0), start);
   ToolState state = start;
   ConstraintStepResult result;
-  for (int i = 0; i < 800; ++i) {
+  for (int i = 0; i < 400; ++i) {
     // Down to a millimeter below where the plate stops the tool, and up.
-    const double height = kRest - 1e-3 + 3e-3 * std::cos(i / 60.0);
+    const double height = kRest - 1e-3 + 3e-3 * std::cos(i / 30.0);
     Vec6 V = Vec6::Zero();
-    V[5] = -3e-3 / 60.0 * std::sin(i / 60.0) / kPeriod;
+    V[5] = -3e-3 / 30.0 * std::sin(i / 30.0) / kPeriod;
     stepper.Step(state, Above(height), V, kStill, &result);
     const LocalWrench wrench = tool.Step(Above(height), V, kStill);
     CHECK(wrench.F == result.F_Ho_W_commanded);
