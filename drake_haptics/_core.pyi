@@ -2427,6 +2427,9 @@ class ContactServo:
         Says that the loop goes on, and with which coupling and which other wrenches (6,) on the tool at To in W, its weight among them. Where this is not called in time, the servo releases as its law says.
         """
 
+    def set_share(self, share: float) -> None:
+        """Shows that part of the wrench, 0 to 1, from the next `renew` on."""
+
     @property
     def tool_state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
         """(13,) newest pose and velocity of the tool in the world."""

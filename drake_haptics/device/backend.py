@@ -184,8 +184,8 @@ class DeviceBackend(ABC):
             DeviceError: The device has no servo of its own.
         """
         raise DeviceError(
-            "device.servo_rate_hz is for a device behind udp://, whose servo is a thread"
-            f" of its own; take it out for {type(self).__name__}"
+            "device.servo_rate_hz is for a device behind udp://, whose servo is a"
+            f" thread; take it out for {type(self).__name__}"
         )
 
     def get_link_status(self) -> LinkStatus:

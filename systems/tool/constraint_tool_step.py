@@ -116,8 +116,8 @@ class ConstraintToolStep(Diagram):
 
     The state is one discrete group (13), [X_WT; V_WT], updated every period from 0 s
     on, or read from a servo that steps the tool; it is told at the end of each tick
-    that the loop goes on. What the search knows from the last tick is the memory of a Context, and never
-    changes an answer by more than round-off.
+    that the loop goes on. What the search knows from the last tick is the memory of a
+    Context, and never changes an answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
     `set_gains`. There are no derivatives.

@@ -18,7 +18,7 @@ const Vec6 kStill = Vec6::Zero();
 
 ServoTool Pressed(double depth, const PoseVector& q_WB) {
   ServoTool tool(MakeStepper(kPeriod), q_WB, {Above(kRest), kStill});
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 80; ++i) {
     // The handle in a base that is not turned: places differ by its own.
     PoseVector q_BH = Above(kRest - depth);
     q_BH.tail<3>() -= q_WB.tail<3>();
@@ -33,11 +33,11 @@ void StepsAsTheStepperDoes() {
   ServoTool tool(stepper, PoseVector::Unit(0), start);
   ToolState state = start;
   ConstraintStepResult result;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 150; ++i) {
     // Down to a millimeter below where the plate stops the tool, and up.
-    const double height = kRest - 1e-3 + 3e-3 * std::cos(i / 30.0);
+    const double height = kRest - 1e-3 + 3e-3 * std::cos(i / 20.0);
     Vec6 V = Vec6::Zero();
-    V[5] = -3e-3 / 30.0 * std::sin(i / 30.0) / kPeriod;
+    V[5] = -3e-3 / 20.0 * std::sin(i / 20.0) / kPeriod;
     stepper.Step(state, Above(height), V, kStill, &result);
     const LocalWrench wrench = tool.Step(Above(height), V, kStill);
     CHECK(wrench.F == result.F_Ho_W_commanded);
@@ -66,7 +66,7 @@ void SlopesAreThoseOfTheNextSolution() {
     PoseVector q_moved = q_BH;
     q_moved[6] += move;
     ServoTool next = tool;
-    for (int i = 0; i < 200; ++i) next.Step(q_moved, kStill, kStill);
+    for (int i = 0; i < 60; ++i) next.Step(q_moved, kStill, kStill);
     const LocalWrench found = next.Step(q_moved, kStill, kStill);
     CHECK(IsNear(found.F[5], wrench.F[5] - wrench.K(5, 5) * move, 1e-3));
   }
@@ -76,7 +76,7 @@ void SlopesAreThoseOfTheNextSolution() {
 void NothingHoldsItInFreeSpace() {
   ServoTool tool(MakeStepper(kPeriod), PoseVector::Unit(0),
                  {Above(0.05), kStill});
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 20; ++i) {
     const LocalWrench wrench = tool.Step(Above(0.051), kStill, kStill);
     CHECK(wrench.K.cwiseAbs().maxCoeff() < 1e-6);
     CHECK(wrench.B.cwiseAbs().maxCoeff() < 1e-6);
@@ -86,7 +86,7 @@ void NothingHoldsItInFreeSpace() {
 void TheCouplingCanChange() {
   ServoTool tool = Pressed(2e-3, PoseVector::Unit(0));
   tool.SetGains({400, 1.0, 1.0, 4e-3, 0.5, 0.02});
-  for (int i = 0; i < 400; ++i) tool.Step(Above(kRest - 2e-3), kStill, kStill);
+  for (int i = 0; i < 60; ++i) tool.Step(Above(kRest - 2e-3), kStill, kStill);
   const LocalWrench wrench = tool.Step(Above(kRest - 2e-3), kStill, kStill);
   CHECK(IsNear(wrench.F[5], 0.5, 1e-3));  // it yields at its limit
 }
