@@ -93,8 +93,9 @@ def wall_rows() -> Iterator[list[str]]:
         ]
         if solver.every == 1:
             judges.append(lambda K, solver=solver: comes_to_rest_in_drake(solver, K))
-        limits = [f"{find_largest_stiffness(judge):.3g}" for judge in judges]
-        row = [solver.name, f"{solver.calc_theory():.0f}", *limits]
+        theory = solver.calc_theory()
+        limits = [f"{find_largest_stiffness(judge, theory):.3g}" for judge in judges]
+        row = [solver.name, f"{theory:.0f}", *limits]
         yield [*row, *["–"] * (5 - len(row))]
 
 

@@ -188,9 +188,7 @@ def BuildHapticDiagram(
         period_s=period_s,
         effects=scene.effects,
         materials=[item.material for item in scene.environment],
-        servo_period_s=(
-            scene.device.wrench_period_s if scene.device.servo_rate_hz else None
-        ),
+        servo_period_s=_find_servo_period(scene),
     )
     if recorder is not None:
         from drake_haptics.loop.outputs import AddTickLog
@@ -217,6 +215,13 @@ def BuildHapticDiagram(
         backend=device if isinstance(device, DeviceBackend) else None,
         X_WB=X_WB,
     )
+
+
+def _find_servo_period(scene: Scene) -> float | None:
+    """Returns how often contact is solved, s; None where it is at every tick."""
+    device = scene.device
+    more = device.servo_rate_hz is not None and device.servo_rate_hz > device.rate_hz
+    return device.wrench_period_s if more else None
 
 
 def _list_pieces(

@@ -353,9 +353,9 @@ class DeviceParameters:
             a device that is not simulated begins where the path does.
         rate_hz: Ticks per second of the haptic loop, Hz.
         servo_rate_hz: How often contact is solved and the tool stepped between ticks,
-            Hz; `rate_hz` times a whole number. For `contact.law: constraint`, and for a
-            simulated device or one behind `udp://`, whose servo does it on a thread of
-            its own. Where not given, at every tick.
+            Hz; `rate_hz` times a whole number. More than once a tick only for
+            `contact.law: constraint`, and for a simulated device or one behind
+            `udp://`, whose servo does it on a thread. Where not given, at every tick.
         tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
             drawing stops, then contacts are looked for less far, then fewer push
             (docs/troubleshooting.md). Nothing is dropped where not given.

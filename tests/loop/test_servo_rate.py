@@ -55,10 +55,7 @@ def test_in_drake_it_is_the_loop_of_that_rate(scene):
         context = simulator.get_context()
         names = ("X_WT", "F_Ho_W_rendered", "X_WH")
         states.append(
-            [
-                haptic.diagram.GetOutputPort(name).Eval(context).copy()
-                for name in names
-            ]
+            [haptic.diagram.GetOutputPort(name).Eval(context).copy() for name in names]
         )
     np.testing.assert_array_equal(np.hstack(states[0]), np.hstack(states[1]))
     assert haptic.period_s == 1 / 4000 and states[0][0][6] < PLATE_TOP + ABOVE
@@ -79,7 +76,7 @@ def test_the_bounds_are_those_of_its_rate(scene):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"contact.law": "penalty"}, "contact.law is 'penalty'"),
+        ({"contact.law": "penalty"}, "under 'penalty'"),
         ({"device.servo_rate_hz": "1500"}, "2000 is the nearest"),
         ({"device.servo_rate_hz": "500"}, "1000 is the nearest"),
         ({"device.servo_rate_hz": "-1000"}, "device.servo_rate_hz"),
