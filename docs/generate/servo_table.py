@@ -94,7 +94,7 @@ def wall_rows() -> Iterator[list[str]]:
         if solver.every == 1:
             judges.append(lambda K, solver=solver: comes_to_rest_in_drake(solver, K))
         theory = solver.calc_theory()
-        limits = [f"{find_largest_stiffness(judge, theory):.3g}" for judge in judges]
+        limits = [f"{find_largest_stiffness(judge, theory):.0f}" for judge in judges]
         row = [solver.name, f"{theory:.0f}", *limits]
         yield [*row, *["–"] * (5 - len(row))]
 

@@ -117,6 +117,7 @@ class Rig:
         )
 
     def tick(self):
+        """Advances the loop by a tick; returns the height of its tool."""
         context = self.simulator.get_context()
         self.simulator.AdvanceTo(context.get_time() + 1e-3)
         return read_height(self.haptic, context)
