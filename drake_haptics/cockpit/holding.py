@@ -140,6 +140,11 @@ class SoftStartDevice(DeviceBackend):
         self._contact.set_share(self._share)
         return self._contact
 
+    def end_contact_servo(self) -> None:
+        """Ends the device's."""
+        self._contact = None
+        self.device.end_contact_servo()
+
     def hand_over(self) -> None:
         """Goes over to what is asked for next from what is shown, as it sets in."""
         self._before_B, self._share = self._shown_B, 0.0

@@ -188,6 +188,9 @@ class DeviceBackend(ABC):
             f" thread; take it out for {type(self).__name__}"
         )
 
+    def end_contact_servo(self) -> None:  # noqa: B027 - most devices have none
+        """Ends what `start_contact_servo` has started: `write` is shown again."""
+
     def get_link_status(self) -> LinkStatus:
         """Returns how the way to the device does."""
         return LinkStatus()

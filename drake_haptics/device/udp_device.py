@@ -99,6 +99,8 @@ class UdpDevice(DeviceBackend):
         Where contact is solved by the servo, the wrench is what that finds, and this
         does nothing.
         """
+        if self._contact is not None and not self._contact.status().is_running:
+            self._contact = None
         if self._contact is None:
             self._servo.publish(
                 command.F_Ho_B, command.X_BH, command.V_BH, command.K_B, command.B_B
@@ -108,13 +110,18 @@ class UdpDevice(DeviceBackend):
         """Lets a thread solve contact between ticks, where `write` does nothing then.
 
         Its first `renew` enables the device. One that was started before ends, and its
-        tool goes on from where it is.
+        tool goes on from where it is, unless something was written since.
         """
+        self.end_contact_servo()
         if self._contact is not None:
-            self._contact.close()
             tool.state = self._contact.tool_state
         self._contact = ContactServo(self._servo, tool)
         return self._contact
+
+    def end_contact_servo(self) -> None:
+        """Ends the thread that solves contact, if there is one."""
+        if self._contact is not None:
+            self._contact.close()
 
     def recover(self) -> None:
         """Takes a device at fault up again: disabled, then enabled by `write`."""
@@ -122,8 +129,7 @@ class UdpDevice(DeviceBackend):
 
     def close(self) -> None:
         """Ends at zero force and gives the device up; may be called again."""
-        if self._contact is not None:
-            self._contact.close()
+        self.end_contact_servo()
         self._finalizer()
 
     def get_link_status(self) -> LinkStatus:

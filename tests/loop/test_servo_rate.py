@@ -170,6 +170,15 @@ def test_the_servos_tool_is_the_loops(scene, driver):
         simulator.AdvanceTo(2e-3)
         height = read_height(again, simulator.get_context())
         assert height == pytest.approx(REST_M, abs=1e-6)
+        # Without the key, the loop's own wrench is shown again.
+        scene.device.servo_rate_hz = None
+        rig.haptic = BuildHapticDiagram(scene, device=rig.backend)
+        rig.simulator = make_simulator(rig.haptic)
+        rig.simulator.Initialize()
+        rig.X_BH[6] = PLATE_TOP + ABOVE
+        wait_for(lambda command, _: np.linalg.norm(command.F_Ho_B[3:]) < 0.1, rig)
+        rig.X_BH[6] = PLATE_TOP + PRESS
+        wait_for(lambda command, _: np.linalg.norm(command.F_Ho_B[3:]) > 1.9, rig)
     finally:
         rig.backend.close()
 
