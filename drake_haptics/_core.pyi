@@ -2377,6 +2377,106 @@ def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order=
         (72,): K then B by rows, at Ho in W; symmetric, no negative eigenvalue. The wrench is F − K δ − B ΔV.
     """
 
+class ServoTool:
+    """
+    The tool as a servo solves it: each period is one exact step of contact from the device's newest handle, and ends in the local wrench that a `ServoLaw` carries on until the next. It knows no clock. Poses are [qw qx qy qz x y z], m; velocities [ω; v], rad/s and m/s; wrenches [τ; f], N·m and N.
+    """
+
+    def __init__(self, stepper: ConstraintStepper, q_WB: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike) -> None:
+        """
+        Copies a stepper, whose objects rest where they are.
+
+        Args:
+            stepper: A `ConstraintStepper` of the servo's period.
+            q_WB: (7,) pose of the device's base in the world.
+            start: (13,) first pose and velocity of the tool in the world.
+
+        Raises:
+            ValueError: Not a pose, or not finite.
+        """
+
+    @property
+    def period_s(self) -> float:
+        """Duration of a period, s."""
+
+    @property
+    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """(13,) pose and velocity of the tool in the world."""
+
+    @state.setter
+    def state(self, arg: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], /) -> None: ...
+
+    def set_gains(self, gains: CouplingGains) -> None:
+        """Changes the coupling from the next period on."""
+
+    def step(self, q_BH: numpy.typing.ArrayLike, V_BH: numpy.typing.ArrayLike, F_applied_To_W: numpy.typing.ArrayLike = ...) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+        """
+        Advances the tool by a period.
+
+        Args:
+            q_BH, V_BH: Pose (7,) and velocity (6,) of the handle in the device's base frame.
+            F_applied_To_W: (6,) all other wrenches on the tool, its weight among them. Defaults to zero.
+
+        Returns:
+            The wrench (6,) on the handle in the base frame at the period's beginning, and its slopes K and B (6, 6), those of coupling and contact in series: it changes by -K δ - B ΔV as the handle moves on.
+
+        Raises:
+            ValueError: A value is not finite, or no pose; the tool stays where it was.
+        """
+
+class ContactServoStatus:
+    """What a `ContactServo` has done. Counted from the start."""
+
+    @property
+    def num_solved(self) -> int:
+        """Periods in which contact was solved."""
+
+    @property
+    def num_late(self) -> int:
+        """
+        Periods that were overrun: the servo went on by the linear wrench of the last one.
+        """
+
+    @property
+    def num_refused(self) -> int:
+        """Handles that were no pose."""
+
+    @property
+    def is_running(self) -> bool:
+        """False once closed."""
+
+class ContactServo:
+    """
+    A thread that solves contact for a `UdpServo`, in each of its periods with the device's newest handle, and gives it the local wrench, which nobody else may do then. It runs without Python; no method but `close` waits for it. One thread of the program may use it.
+    """
+
+    def __init__(self, servo: UdpServo, tool: ServoTool) -> None:
+        """
+        Starts to wait for the first `renew`.
+
+        Args:
+            servo: It answers the device.
+            tool: It is copied.
+        """
+
+    def renew(self, gains: CouplingGains, F_applied_To_W: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> None:
+        """
+        Says that the loop goes on, and with which coupling and which other wrenches (6,) on the tool at To in W, its weight among them. Where this is not called in time, the servo releases as its law says.
+        """
+
+    def set_share(self, share: float) -> None:
+        """Shows that part of the wrench, 0 to 1, from the next `renew` on."""
+
+    @property
+    def tool_state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """(13,) newest pose and velocity of the tool in the world."""
+
+    def status(self) -> ContactServoStatus:
+        """Returns a `ContactServoStatus`."""
+
+    def close(self) -> None:
+        """Ends the thread, within a period. May be called again."""
+
 def run_tool_loop(tool: ConvexPieces, objects: Sequence[ConvexPieces], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], tolerance: float, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], stiffness: float, damping: float, h: float, handle: Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], start: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]]:
     """
     What a haptic loop without effects computes, tick after tick, without Drake and without the GIL: query, shared stiffness, penalty force, coupling, and the tool's implicit step.

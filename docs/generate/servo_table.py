@@ -1,4 +1,4 @@
-"""Tabulates and draws what a stalled loop does to a device, with a servo and without.
+"""Tabulates and draws what a servo does for a device: at stalls, and at stiff walls.
 
 python docs/generate/servo_table.py --write
 """
@@ -25,6 +25,13 @@ from servo_loop import (
     UNBRAKED,
     Scheme,
     simulate,
+)
+from solved_wall import (
+    SOLVERS,
+    calc_spectral_radius,
+    comes_to_rest,
+    comes_to_rest_in_drake,
+    find_largest_stiffness,
 )
 
 _DOCS = Path(__file__).parents[2] / "docs"
@@ -76,6 +83,22 @@ def _cell(scheme: Scheme, K: float, hand: tuple[float, float, float] | None) -> 
     return f"{_millimeters(run.calc_buzz())}, {run.calc_stale_force():.1f} N"
 
 
+def wall_rows() -> Iterator[list[str]]:
+    """The stiffest wall that is stable, in theory, linearized and simulated."""
+    yield ["contact", "theory", "linearization", "simulated servo", "loop in Drake"]
+    for solver in SOLVERS:
+        judges = [
+            lambda K, solver=solver: calc_spectral_radius(solver, K) < 1.0,
+            lambda K, solver=solver: comes_to_rest(solver, K),
+        ]
+        if solver.every == 1:
+            judges.append(lambda K, solver=solver: comes_to_rest_in_drake(solver, K))
+        theory = solver.calc_theory()
+        limits = [f"{find_largest_stiffness(judge, theory):.0f}" for judge in judges]
+        row = [solver.name, f"{theory:.0f}", *limits]
+        yield [*row, *["–"] * (5 - len(row))]
+
+
 def _millimeters(length_m: float) -> str:
     if length_m < BUZZ_M:
         return "still"
@@ -91,7 +114,7 @@ TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
 
 def with_tables(page: str) -> str:
     """Returns the page with the tables of now."""
-    for name, rows in TABLES.items():
+    for name, rows in {**TABLES, "walls": wall_rows}.items():
         table = to_markdown(rows())
         print(table)
         page = replace_part(page, table, name)

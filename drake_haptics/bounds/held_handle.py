@@ -36,7 +36,7 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
         A sentence for each bound that is broken, as `check_coupling` has it.
     """
     held = calc_scene_handle(scene, device)
-    period_s = 1.0 / scene.device.rate_hz
+    period_s = scene.device.wrench_period_s
     return check_coupling(scene.coupling, held, period_s, calc_force_delay(scene))
 
 
@@ -73,7 +73,7 @@ def find_real_bounds(
     """
     found = find_exceeded_ratings(scene.coupling, preset)
     if loosely_held is not None:
-        period_s = 1.0 / scene.device.rate_hz
+        period_s = scene.device.wrench_period_s
         found += [
             replace(bound, sentence=f"{bound.sentence} (in a {LOOSEST_GRIP} grip)")
             for bound in find_broken_bounds(
@@ -117,7 +117,7 @@ def calc_force_delay(scene: Scene) -> float:
     That is the delay t_d on top of the hold, as the laws of stability count it.
     """
     delay = scene.device.twin.delay
-    return 0.0 if delay is None else delay.samples / scene.device.rate_hz
+    return 0.0 if delay is None else delay.samples * scene.device.wrench_period_s
 
 
 def calc_scene_handle(

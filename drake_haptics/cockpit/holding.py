@@ -13,6 +13,7 @@ import numpy as np
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
+from drake_haptics._core import ContactServo, ServoTool
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -97,6 +98,7 @@ class SoftStartDevice(DeviceBackend):
         self._share, self._rise = 0.0, period_s / _RISE_S
         # What the rest is of, and what was shown last.
         self._before_B = self._shown_B = np.zeros(6)
+        self._contact: ContactServo | None = None
 
     def __repr__(self) -> str:
         return repr(self.device)
@@ -134,6 +136,19 @@ class SoftStartDevice(DeviceBackend):
             command = self._ease(command)
         self._shown_B = command.F_Ho_B
         self.device.write(command)
+        if self._contact is not None:
+            self._contact.set_share(self._share)
+
+    def start_contact_servo(self, tool: ServoTool) -> ContactServo:
+        """Starts the device's, which shows as much of its wrench as of one here."""
+        self._contact = self.device.start_contact_servo(tool)
+        self._contact.set_share(self._share)
+        return self._contact
+
+    def end_contact_servo(self) -> None:
+        """Ends the device's."""
+        self._contact = None
+        self.device.end_contact_servo()
 
     def hand_over(self) -> None:
         """Goes over to what is asked for next from what is shown, as it sets in."""

@@ -14,6 +14,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_haptics._core import ContactServo, ServoTool
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.one_line import count, one_line
 
@@ -177,6 +178,23 @@ class DeviceBackend(ABC):
 
     def recover(self) -> None:  # noqa: B027 - most devices have nothing to leave
         """Takes a device at fault up again: disabled, then enabled by `write`."""
+
+    def start_contact_servo(self, tool: ServoTool) -> ContactServo:
+        """Lets a thread solve contact between ticks and show it instead of `write`.
+
+        Args:
+            tool: It is copied.
+
+        Raises:
+            DeviceError: The device has no servo of its own.
+        """
+        raise DeviceError(
+            "device.servo_rate_hz is for a device behind udp://, whose servo is a"
+            f" thread; take it out for {type(self).__name__}"
+        )
+
+    def end_contact_servo(self) -> None:  # noqa: B027 - most devices have none
+        """Ends what `start_contact_servo` has started: `write` is shown again."""
 
     def get_link_status(self) -> LinkStatus:
         """Returns how the way to the device does."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import weakref
 
-from drake_haptics._core import HandleState, UdpServo
+from drake_haptics._core import ContactServo, HandleState, ServoTool, UdpServo
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -73,6 +73,7 @@ class UdpDevice(DeviceBackend):
                 f"the driver's address cannot be used: {error}"
             ) from error
         self._reading: DeviceReading | None = None
+        self._contact: ContactServo | None = None
         # Also where the program ends without close.
         self._finalizer = weakref.finalize(self, self._servo.close)
 
@@ -98,10 +99,34 @@ class UdpDevice(DeviceBackend):
         return True
 
     def write(self, command: DeviceCommand) -> None:
-        """Asks for a wrench from now on; the first call also enables the device."""
-        self._servo.publish(
-            command.F_Ho_B, command.X_BH, command.V_BH, command.K_B, command.B_B
-        )
+        """Asks for a wrench from now on; the first call also enables the device.
+
+        Where contact is solved by the servo, the wrench is what that finds, and this
+        does nothing.
+        """
+        if self._contact is not None and not self._contact.status().is_running:
+            self._contact = None
+        if self._contact is None:
+            self._servo.publish(
+                command.F_Ho_B, command.X_BH, command.V_BH, command.K_B, command.B_B
+            )
+
+    def start_contact_servo(self, tool: ServoTool) -> ContactServo:
+        """Lets a thread solve contact between ticks, where `write` does nothing then.
+
+        Its first `renew` enables the device. One that was started before ends, and its
+        tool goes on from where it is, unless something was written since.
+        """
+        self.end_contact_servo()
+        if self._contact is not None:
+            tool.state = self._contact.tool_state
+        self._contact = ContactServo(self._servo, tool)
+        return self._contact
+
+    def end_contact_servo(self) -> None:
+        """Ends the thread that solves contact, if there is one."""
+        if self._contact is not None:
+            self._contact.close()
 
     def recover(self) -> None:
         """Takes a device at fault up again: disabled, then enabled by `write`."""
@@ -109,6 +134,7 @@ class UdpDevice(DeviceBackend):
 
     def close(self) -> None:
         """Ends at zero force and gives the device up; may be called again."""
+        self.end_contact_servo()
         self._finalizer()
 
     def get_link_status(self) -> LinkStatus:

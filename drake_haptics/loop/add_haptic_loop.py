@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from pydrake.math import RigidTransform
@@ -68,6 +68,7 @@ def AddHapticLoop(
     effects: Effects | None = None,
     materials: Sequence[Material] | None = None,
     load_shedding: LoadShedding | None = None,
+    servo_period_s: float | None = None,
 ) -> HapticLoop:
     """Adds the systems of a haptic loop around a device and connects them.
 
@@ -92,6 +93,9 @@ def AddHapticLoop(
         load_shedding: Says what to leave out of ticks that take too long; not yet in a
             builder. The loop must be the first part of its diagram then, and a
             `TickEnd` the last.
+        servo_period_s: How often contact is solved between ticks under the constraint
+            law, s: by a thread of the device, or in Drake where it is simulated, with
+            a port of that period. Defaults to at every tick.
 
     Returns:
         The systems.
@@ -116,7 +120,10 @@ def AddHapticLoop(
         effects=(effects, Effects | None),
         materials=(materials, Sequence[Material] | None),
         load_shedding=(load_shedding, LoadShedding | None),
+        servo_period_s=(servo_period_s, float | None),
     )
+    if servo_period_s is not None and not is_constraint(contact):
+        raise ValueError("servo_period_s is for contact.law: constraint")
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
@@ -149,6 +156,8 @@ def AddHapticLoop(
             [name for name in forces if name != "friction"],
             coefficient=find_coefficients(friction, materials) if friction else [],
             break_away_m=(friction or FrictionParameters()).break_away_m,
+            servo_period_s=servo_period_s,
+            start_servo=_find_servo(device, X_WT, servo_period_s),
         )
         builder.AddNamedSystem("constraint_tool_step", step)
         base = BaseSystems(device, step, step, load_shedding, None)
@@ -216,7 +225,7 @@ def AddHapticLoop(
             ),
         }
         connect_by_name(builder, base.haptic_tool, chain)
-    if device.wants_slopes:
+    if device.wants_slopes and servo_period_s is None:
         _add_handle_model(builder, base, sources, chain)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
     if loop.penalty is not None:
@@ -225,6 +234,16 @@ def AddHapticLoop(
         )
     builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
     return loop
+
+
+def _find_servo(
+    device: HapticDevice, X_WT: RigidTransform, servo_period_s: float | None
+) -> Callable[[_core.ConstraintStepper], _core.ContactServo] | None:
+    """Returns what starts the thread of a device that is not simulated, if asked."""
+    start = device.start_contact_servo
+    if servo_period_s is None or start is None:
+        return None
+    return lambda stepper: start(stepper, X_WT)
 
 
 def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:

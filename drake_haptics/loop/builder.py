@@ -134,7 +134,8 @@ def BuildHapticDiagram(
         SceneError: A value is impossible, also in a scene that was made or changed
             in Python, or the hand's path cannot be reached.
         MeshError: A mesh cannot be treated.
-        DeviceError: The device says nothing.
+        DeviceError: The device says nothing, or has no servo for
+            `device.servo_rate_hz`.
         TypeError: An argument, or a value of the scene, is of another kind; the
             message names it.
     """
@@ -195,6 +196,7 @@ def BuildHapticDiagram(
         period_s=period_s,
         effects=scene.effects,
         materials=[item.material for item in scene.environment],
+        servo_period_s=_find_servo_period(scene),
     )
     if recorder is not None:
         from drake_haptics.loop.outputs import AddTickLog
@@ -221,6 +223,13 @@ def BuildHapticDiagram(
         backend=device if isinstance(device, DeviceBackend) else None,
         X_WB=X_WB,
     )
+
+
+def _find_servo_period(scene: Scene) -> float | None:
+    """Returns how often contact is solved, s; None where it is at every tick."""
+    device = scene.device
+    more = device.servo_rate_hz is not None and device.servo_rate_hz > device.rate_hz
+    return device.wrench_period_s if more else None
 
 
 def _list_pieces(

@@ -187,6 +187,8 @@ def make_device_port(
     """
     X_WB = X_WB or RigidTransform()
     reading = wait_for_reading(backend)
+    # That of a loop that was built before for this device.
+    backend.end_contact_servo()
     io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")
     device = HapticDevice(

@@ -62,7 +62,7 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
         )
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     X_WB = place_base(scene, path)
-    twin = _make_arm_twin(device.twin, preset, 1.0 / device.rate_hz)
+    twin = _make_arm_twin(device.twin, preset, device.wrench_period_s)
     try:
         arm = SimulatedArm(
             model,
@@ -87,7 +87,7 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
     force, torque = device.max_force_N, device.max_torque_Nm
     return HapticDevice(
         arm,
-        period_s=1.0 / device.rate_hz,
+        period_s=device.wrench_period_s,
         max_force_N=preset.max_force_N if force is None else force,
         max_torque_Nm=preset.max_torque_Nm if torque is None else torque,
     )

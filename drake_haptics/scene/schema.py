@@ -355,6 +355,10 @@ class DeviceParameters:
             the middle of its workspace is put at the middle of the hand's path, and
             a device that is not simulated begins where the path does.
         rate_hz: Ticks per second of the haptic loop, Hz.
+        servo_rate_hz: How often contact is solved and the tool stepped between ticks,
+            Hz; `rate_hz` times a whole number. More than once a tick only for
+            `contact.law: constraint`, and for a simulated device or one behind
+            `udp://`, whose servo does it on a thread. Where not given, at every tick.
         tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
             drawing stops, then contacts are looked for less far, then fewer push
             (docs/troubleshooting.md). Nothing is dropped where not given.
@@ -368,10 +372,16 @@ class DeviceParameters:
     preset: str = "phantom_premium_1_5_6dof"
     base: Pose | None = None
     rate_hz: float = 1000.0
+    servo_rate_hz: float | None = None
     tick_budget_us: float | None = None
     max_force_N: float | None = None
     max_torque_Nm: float | None = None
     twin: DeviceImperfections = field(default_factory=DeviceImperfections)
+
+    @property
+    def wrench_period_s(self) -> float:
+        """How often the wrench is computed that the device shows, s."""
+        return 1.0 / (self.servo_rate_hz or self.rate_hz)
 
 
 @dataclass(slots=True)

@@ -67,6 +67,7 @@ def check_values(scene: Scene) -> None:
         _check_material(item.material, f"{where}.material", scene.effects)
     _check_contact(scene.contact)
     require_all_positive(scene.device, "device", ["rate_hz"])
+    _check_servo_rate(scene)
     if scene.contact.query_rate_hz is not None:
         check_query_rate(scene.contact.query_rate_hz, scene.device.rate_hz)
     _check_effects(scene.effects)
@@ -199,6 +200,26 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
         where,
         f"must be device.rate_hz ({ticks_per_s:g}) divided by a whole number, is"
         f" {rate_hz:g}; {ticks_per_s / max(1, round(ticks)):.10g} is the nearest",
+    )
+
+
+def _check_servo_rate(scene: Scene) -> None:
+    rate_hz, ticks_per_s = scene.device.servo_rate_hz, scene.device.rate_hz
+    if rate_hz is None:
+        return
+    where = "device.servo_rate_hz"
+    steps = rate_hz / ticks_per_s
+    require(
+        round(steps) >= 1 and abs(steps - round(steps)) <= _RATE_SLACK * steps,
+        where,
+        f"must be device.rate_hz ({ticks_per_s:g}) times a whole number, is"
+        f" {rate_hz:g}; {ticks_per_s * max(1, round(steps)):.10g} is the nearest",
+    )
+    require(
+        round(steps) == 1 or scene.contact.law == "constraint",
+        where,
+        f"may be more than device.rate_hz ({ticks_per_s:g}) under contact.law:"
+        f" constraint alone, and is {rate_hz:g} under '{scene.contact.law}'",
     )
 
 

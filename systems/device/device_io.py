@@ -15,7 +15,12 @@ from pydrake.systems.framework import (
     State,
 )
 
-from drake_haptics._core import FrameChange
+from drake_haptics._core import (
+    ConstraintStepper,
+    ContactServo,
+    FrameChange,
+    ServoTool,
+)
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import (
@@ -83,6 +88,8 @@ class DeviceIo(Diagram):
         """
         super().__init__()
         check_positive(period_s=period_s)
+        self._backend = backend
+        self._q_WB = pose_to_vector(X_WB)
         builder = DiagramBuilder()
         exchange = builder.AddNamedSystem(
             "exchange", _Exchange(backend, X_WB, period_s, first_reading)
@@ -94,6 +101,21 @@ class DeviceIo(Diagram):
         )
         builder.ExportOutput(exchange.GetOutputPort("reading"), "reading")
         builder.BuildInto(self)
+
+    def start_contact_servo(
+        self, stepper: ConstraintStepper, X_WT: RigidTransform
+    ) -> ContactServo:
+        """Starts the backend's `start_contact_servo` with a tool at rest.
+
+        Args:
+            stepper: Of the servo's period, its objects posed.
+            X_WT: Where the tool is.
+
+        Raises:
+            DeviceError: The backend has no such thread.
+        """
+        start = np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
+        return self._backend.start_contact_servo(ServoTool(stepper, self._q_WB, start))
 
 
 class _Exchange(LeafSystem):

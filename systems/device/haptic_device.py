@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     System,
 )
 
+from drake_haptics._core import ConstraintStepper, ContactServo
 from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold
+
+# Of a stepper and the tool's first pose.
+_StartServo = Callable[[ConstraintStepper, RigidTransform], ContactServo]
 
 
 class HapticDevice(Diagram):
@@ -84,6 +91,9 @@ class HapticDevice(Diagram):
         if backend.HasOutputPort("reading"):
             builder.ExportOutput(backend.GetOutputPort("reading"), "reading")
         builder.BuildInto(self)
+        self._start_contact_servo: _StartServo | None = getattr(
+            backend, "start_contact_servo", None
+        )
 
     @property
     def max_force_N(self) -> float:
@@ -94,6 +104,11 @@ class HapticDevice(Diagram):
     def max_torque_Nm(self) -> float:
         """Largest torque shown, N·m."""
         return self._max_torque_Nm
+
+    @property
+    def start_contact_servo(self) -> _StartServo | None:
+        """Has a `DeviceIo` start a thread that solves contact; None for others."""
+        return self._start_contact_servo
 
     @property
     def wants_slopes(self) -> bool:

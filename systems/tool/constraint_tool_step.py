@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,8 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
+    EventStatus,
+    State,
     ValueProducer,
 )
 
@@ -22,6 +24,7 @@ from drake_haptics._core import (
     AutoDiffVector,
     ConstraintStepper,
     ConstraintStepResult,
+    ContactServo,
     ContactSet,
     ConvexPieces,
     CouplingGains,
@@ -127,9 +130,10 @@ class ConstraintToolStep(Diagram):
     (core/constraint/row_friction.h).
 
     The state is a discrete group (13), [X_WT; V_WT], and with friction a second one
-    (8 for each object), the anchors, both updated every period from 0 s on. What the
-    search knows from the last tick is the memory of a Context, and never changes an
-    answer by more than round-off.
+    (8 for each object), the anchors, both updated every period from 0 s on, or read
+    from a servo that steps the tool; it is told at the end of each tick that the loop
+    goes on. What the search knows from the last tick is the memory of a Context, and
+    never changes an answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
     `set_gains`. Outputs have no derivatives by them, and none at all with friction.
@@ -152,6 +156,8 @@ class ConstraintToolStep(Diagram):
         *,
         coefficient: Sequence[float] = (),
         break_away_m: float = 1e-4,
+        servo_period_s: float | None = None,
+        start_servo: Callable[[ConstraintStepper], ContactServo] | None = None,
     ):
         """Constructs the system.
 
@@ -169,6 +175,10 @@ class ConstraintToolStep(Diagram):
                 tool there, and its update sees the plant as the plant's own does.
             coefficient: μ of friction with each object. Defaults to no friction.
             break_away_m: How far the tool gives way before it slides, m.
+            servo_period_s: How often the tool is stepped between ticks, s. Defaults to
+                at every tick. Nothing moves but it and the handle then.
+            start_servo: Starts a thread that steps the tool instead, by a stepper of
+                that period. The state is that thread's at each tick then.
 
         Raises:
             ValueError: The period, a skin or the break-away is not positive, a
@@ -201,6 +211,8 @@ class ConstraintToolStep(Diagram):
                 plant,
                 coefficient,
                 break_away_m,
+                servo_period_s,
+                start_servo,
             ),
         )
         step = self._step
@@ -273,6 +285,8 @@ class _ConstraintStep(DifferentiableSystem):
         plant: MultibodyPlant | None,
         coefficient: Sequence[float],
         break_away_m: float,
+        servo_period_s: float | None,
+        start_servo: Callable[[ConstraintStepper], ContactServo] | None,
     ):
         super().__init__()
         self._coefficient = np.array(coefficient, dtype=float)
@@ -282,7 +296,7 @@ class _ConstraintStep(DifferentiableSystem):
         self._objects = tuple(objects)
         self._skin_m = np.array(skin_m, dtype=float)
         self._dynamics = dynamics
-        self._period_s = period_s
+        self._period_s = servo_period_s or period_s
         # Wrong arguments are refused here, and not at the first tick.
         num_anchors = self._make_stepper(gains).num_anchors
         self._gains = self.DeclareAbstractParameter(Value[object](gains))
@@ -368,19 +382,28 @@ class _ConstraintStep(DifferentiableSystem):
             self.DeclareVectorOutputPort(
                 "friction_model", 78, self._calc_friction_model, from_result
             )
+        if start_servo is not None:
+            if self._motions:
+                raise ValueError("a servo steps a tool among objects that rest")
+            self._servo = start_servo(self._make_stepper(gains))
+            # As `DeviceIo` does: read before all updates, and say at the end of a tick
+            # that the loop goes on.
+            self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._follow)
+            self.DeclarePeriodicPublishEvent(period_s, 0.0, self._renew)
+            return
         if plant is not None:
             self.DeclareInitializationDiscreteUpdateEvent(self._start)
         if plant is not None and plant.has_sampled_output_ports():
             # As the plant's: a discrete update would come after it.
             self.DeclarePeriodicUnrestrictedUpdateEvent(
-                period_s,
+                self._period_s,
                 0.0,
                 lambda context, state: self._update(
                     context, state.get_mutable_discrete_state()
                 ),
             )
         else:
-            self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+            self.DeclarePeriodicDiscreteUpdateEvent(self._period_s, 0.0, self._update)
 
     def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
         stepper = ConstraintStepper(
@@ -413,20 +436,24 @@ class _ConstraintStep(DifferentiableSystem):
         for i, (X_WO, V_WO) in self._motions.items():
             stepper.set_object_pose(i, X_WO.Eval(context), V_WO.Eval(context))
         state = context.get_discrete_state(0).value()
-        F_To_W = np.zeros(6)
-        for port in self._wrenches:
-            if port.HasValue(context):
-                F_To_W += port.Eval(context)[:6]
         value.set_value(
             stepper.step(
                 state[:7],
                 state[7:],
                 self._X_WH.Eval(context),
                 self._V_WH.Eval(context),
-                F_To_W,
+                self._sum_wrenches(context),
                 self._read_anchors(context),
             )
         )
+
+    def _sum_wrenches(self, context: Context) -> np.ndarray:
+        """Returns (6,) what else pushes the tool, [τ; f] at To in the world."""
+        F_To_W = np.zeros(6)
+        for port in self._wrenches:
+            if port.HasValue(context):
+                F_To_W += port.Eval(context)[:6]
+        return F_To_W
 
     def _read_anchors(self, context: Context) -> np.ndarray:
         """Returns the anchors of friction at the tick's beginning."""
@@ -516,6 +543,14 @@ class _ConstraintStep(DifferentiableSystem):
         arm = X_WT.translation() - self._X_WH.Eval(context)[4:]
         V_WT = V_WH + np.concatenate([np.zeros(3), np.cross(V_WH[:3], arm)])
         next_state.set_value(0, np.concatenate([pose_to_vector(X_WT), V_WT]))
+
+    def _follow(self, context: Context, state: State) -> None:
+        state.get_mutable_discrete_state().set_value(0, self._servo.tool_state)
+
+    def _renew(self, context: Context) -> EventStatus:
+        gains = context.get_abstract_parameter(self._gains).get_value()
+        self._servo.renew(gains, self._sum_wrenches(context))
+        return EventStatus.Succeeded()
 
     def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
         output.set_value(self._eval_result(context).F_Ho_W_commanded)

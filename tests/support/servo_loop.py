@@ -112,7 +112,7 @@ def simulate(
         duration_s: Of the run, s.
     """
     dt = 1.0 / scheme.servo_hz
-    flow, rest = _make_flow(hand, dt)
+    flow, rest = make_flow(hand, dt)
     samples, every = round(duration_s / dt), round(scheme.servo_hz / loop_hz)
     law = ServoLaw(
         max_force_N=MAX_FORCE_N,
@@ -153,7 +153,7 @@ def simulate(
     return Run(dt * np.arange(samples), *out.T, delay_s=delay * dt)
 
 
-def _make_flow(
+def make_flow(
     hand: tuple[float, float, float] | None, dt: float
 ) -> tuple[np.ndarray, float]:
     """Returns the exact map of [x - rest; v; force] over a sample, and `rest`, m."""

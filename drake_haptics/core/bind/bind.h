@@ -46,6 +46,7 @@ void BindClock(nanobind::module_& m);
 void BindPackets(nanobind::module_& m);
 void BindGate(nanobind::module_& m);
 void BindServo(nanobind::module_& m);
+void BindContactServo(nanobind::module_& m);
 void BindToolLoop(nanobind::module_& m);
 void BindContactChain(nanobind::module_& m);
 void BindForeignContacts(nanobind::module_& m);

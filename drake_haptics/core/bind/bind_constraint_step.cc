@@ -13,6 +13,7 @@
 #include "bind/bind_eigen.h"
 #include "bind/bind_pose.h"
 #include "bind/bind_real_array.h"
+#include "bind/bind_servo.h"
 #include "bind/bind_shapes.h"
 #include "bind/bind_turn.h"
 #include "constraint/constraint_step.h"
@@ -44,6 +45,11 @@ class SharedStepper {
   void SetGains(const CouplingGains& gains) {
     const Turn turn(&mutex_, Turn::Gil::kHold);
     stepper_.SetGains(gains);
+  }
+
+  ConstraintStepper Copy() const {
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    return stepper_;
   }
 
   void SetObjectPose(nb::handle place, nb::handle X_WO_value,
@@ -135,11 +141,6 @@ class SharedStepper {
     return q;
   }
 
-  ConstraintStepper Copy() const {
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
-    return stepper_;
-  }
-
   mutable std::mutex mutex_;
   ConstraintStepper stepper_;
 };
@@ -223,6 +224,10 @@ void BindResult(nb::module_& m) {
 }
 
 }  // namespace
+
+ConstraintStepper CopyStepper(nb::handle stepper) {
+  return nb::cast<const SharedStepper&>(stepper).Copy();
+}
 
 void BindConstraintStep(nb::module_& m) {
   BindResult(m);

@@ -56,6 +56,7 @@ NB_MODULE(_core, m) {
   drake_haptics::BindPackets(m);
   drake_haptics::BindGate(m);
   drake_haptics::BindServo(m);
+  drake_haptics::BindContactServo(m);
   drake_haptics::BindToolLoop(m);
   drake_haptics::BindContactChain(m);
   drake_haptics::BindForeignContacts(m);

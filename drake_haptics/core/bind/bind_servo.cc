@@ -7,8 +7,8 @@
 
 #include "bind/bind.h"
 #include "bind/bind_eigen.h"
+#include "bind/bind_servo.h"
 #include "device/servo_law.h"
-#include "device/udp_servo.h"
 #include "tool/handle_model.h"
 
 namespace nb = nanobind;
@@ -17,16 +17,6 @@ namespace drake_haptics {
 namespace {
 
 using OptionalSlope = std::optional<Mat6>;
-
-// Other Python threads run while a name is looked up, and while the servo ends.
-class PythonUdpServo : public UdpServo {
- public:
-  using UdpServo::UdpServo;
-  ~PythonUdpServo() {
-    const nb::gil_scoped_release release;
-    Close();
-  }
-};
 
 LocalWrench ToLocalWrench(const Vec6& F, const PoseVector& X, const Vec6& V,
                           const OptionalSlope& K, const OptionalSlope& B,

@@ -98,6 +98,7 @@ class ConstraintStepper {
   int num_objects() const { return rows_.num_objects(); }
   const Settings& settings() const { return settings_; }
 
+  /// Changes the coupling from the next tick on.
   void SetGains(const CouplingGains& gains) { settings_.gains = gains; }
 
   /// Poses object i at the next tick's beginning, and tells how it moves in it.

@@ -1,7 +1,5 @@
 #include "device/udp_servo.h"
 
-#include <pthread.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +18,7 @@ constexpr double kHandshakePeriod = 0.05;  // s, of commands to a silent driver
 constexpr double kSilence = 0.5;           // s until a driver is gone
 constexpr double kPatience = 0.01;         // s until the thread looks around
 constexpr int kMostPackets = 256;          // taken at once
+constexpr int kPriority = 10;
 constexpr int kDisables = 5;  // commands at the end, in case of loss
 constexpr auto kDisablePause = std::chrono::milliseconds(4);
 
@@ -29,20 +28,6 @@ std::uint32_t DrawSession() {
   while (session == 0) session = static_cast<std::uint32_t>(random());
   return session;
 }
-
-// All signals are for the interpreter's thread, which would else sleep on.
-class BlockedSignals {
- public:
-  BlockedSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
 
 }  // namespace
 
@@ -96,7 +81,7 @@ UdpServoStatus UdpServo::status() {
   return status_;
 }
 
-void UdpServo::Publish(const LocalWrench& wrench) {
+void UdpServo::Publish(const LocalWrench& wrench, double time) {
   PlainWrench plain;
   double* out = plain.data();
   const auto append = [&out](const auto& values) {
@@ -107,7 +92,7 @@ void UdpServo::Publish(const LocalWrench& wrench) {
   append(wrench.V);
   append(wrench.K);
   append(wrench.B);
-  *out = Now();
+  *out = time;
   wrench_box_.Write(plain);
 }
 
@@ -120,7 +105,7 @@ double UdpServo::Now() const {
 }
 
 void UdpServo::Run() {
-  report_.has_priority = RequestRealtimePriority();
+  report_.has_priority = RequestRealtimePriority(kPriority);
   report_.has_locked_memory = RequestLockedMemory(this, sizeof(*this));
   try {
     Serve();

@@ -62,8 +62,21 @@ class UdpServo {
   /// The newest state; its `number` is 0 before the first. One thread only.
   HandleState Read();
 
+  /// The newest state, for any number of threads, each with its own `seen`; 0
+  /// at first.
+  /// @returns whether `state` was replaced.
+  bool ReadNewer(std::uint64_t* seen, HandleState* state) const {
+    return state_box_.ReadNewer(seen, state);
+  }
+
   /// Shows a wrench from now on; the first enables the device. One thread only.
-  void Publish(const LocalWrench& wrench);
+  void Publish(const LocalWrench& wrench) { Publish(wrench, Now()); }
+
+  /// The same, of a loop that has last gone on at `time` by our clock, s.
+  void Publish(const LocalWrench& wrench, double time);
+
+  /// Our clock, s. Any thread.
+  double Now() const;
 
   /// Takes up again after a fault.
   void Recover();
@@ -81,7 +94,6 @@ class UdpServo {
   // F, X, V, K, B, time: as plain memory, which can cross threads.
   using PlainWrench = std::array<double, 6 + 7 + 6 + 36 + 36 + 1>;
 
-  double Now() const;
   void Run();
   void Serve();
   bool Drain();

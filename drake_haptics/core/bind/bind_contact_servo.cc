@@ -1,0 +1,159 @@
+#include <nanobind/stl/tuple.h>
+
+#include <tuple>
+#include <utility>
+
+#include "bind/bind.h"
+#include "bind/bind_eigen.h"
+#include "bind/bind_servo.h"
+#include "servo/contact_servo.h"
+#include "servo/servo_tool.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using StateVector = Eigen::Matrix<double, 13, 1>;
+
+ToolState ToToolState(const StateVector& state) {
+  return {state.head<7>(), state.tail<6>()};
+}
+
+StateVector ToVector(const ToolState& state) {
+  StateVector out;
+  out << state.q_WT, state.V_WT;
+  return out;
+}
+
+class PythonContactServo : public ContactServo {
+ public:
+  using ContactServo::ContactServo;
+  ~PythonContactServo() {
+    const nb::gil_scoped_release release;
+    Close();
+  }
+};
+
+void BindServoTool(nb::module_& m) {
+  nb::class_<ServoTool>(
+      m, "ServoTool",
+      "The tool as a servo solves it: each period is one exact step of contact "
+      "from the device's newest handle, and ends in the local wrench that a "
+      "`ServoLaw` carries on until the next. It knows no clock. Poses are "
+      "[qw qx qy qz x y z], m; velocities [ω; v], rad/s and m/s; wrenches "
+      "[τ; f], N·m and N.")
+      .def(
+          "__init__",
+          [](ServoTool* self, nb::handle stepper, const PoseVector& q_WB,
+             const StateVector& start) {
+            new (self)
+                ServoTool(CopyStepper(stepper), q_WB, ToToolState(start));
+          },
+          nb::arg("stepper"), nb::arg("q_WB"), nb::arg("start"),
+          nb::sig("def __init__(self, stepper: ConstraintStepper, q_WB: "
+                  "numpy.typing.ArrayLike, start: numpy.typing.ArrayLike) -> "
+                  "None"),
+          "Copies a stepper, whose objects rest where they are.\n\n"
+          "Args:\n"
+          "    stepper: A `ConstraintStepper` of the servo's period.\n"
+          "    q_WB: (7,) pose of the device's base in the world.\n"
+          "    start: (13,) first pose and velocity of the tool in the "
+          "world.\n\n"
+          "Raises:\n    ValueError: Not a pose, or not finite.")
+      .def_prop_ro("period_s", &ServoTool::period, "Duration of a period, s.")
+      .def_prop_rw(
+          "state", [](const ServoTool& self) { return ToVector(self.state()); },
+          [](ServoTool& self, const StateVector& state) {
+            self.SetState(ToToolState(state));
+          },
+          "(13,) pose and velocity of the tool in the world.")
+      .def("set_gains", &ServoTool::SetGains, nb::arg("gains"),
+           "Changes the coupling from the next period on.")
+      .def(
+          "step",
+          [](ServoTool& self, const PoseVector& q_BH, const Vec6& V_BH,
+             const Vec6& F_applied) {
+            const LocalWrench wrench = self.Step(q_BH, V_BH, F_applied);
+            return std::tuple(wrench.F, wrench.K, wrench.B);
+          },
+          nb::arg("q_BH"), nb::arg("V_BH"),
+          nb::arg("F_applied_To_W") = Vec6(Vec6::Zero()),
+          nb::sig("def step(self, q_BH: numpy.typing.ArrayLike, V_BH: "
+                  "numpy.typing.ArrayLike, F_applied_To_W: "
+                  "numpy.typing.ArrayLike = ...) -> tuple[numpy.ndarray, "
+                  "numpy.ndarray, numpy.ndarray]"),
+          "Advances the tool by a period.\n\n"
+          "Args:\n"
+          "    q_BH, V_BH: Pose (7,) and velocity (6,) of the handle in the "
+          "device's base frame.\n"
+          "    F_applied_To_W: (6,) all other wrenches on the tool, its weight "
+          "among them. Defaults to zero.\n\n"
+          "Returns:\n"
+          "    The wrench (6,) on the handle in the base frame at the period's "
+          "beginning, and its slopes K and B (6, 6), those of coupling and "
+          "contact in series: it changes by -K δ - B ΔV as the handle moves "
+          "on.\n\n"
+          "Raises:\n"
+          "    ValueError: A value is not finite, or no pose; the tool stays "
+          "where it was.");
+}
+
+void BindThread(nb::module_& m) {
+  using Status = ContactServoStatus;
+  nb::class_<Status>(m, "ContactServoStatus",
+                     "What a `ContactServo` has done. Counted from the start.")
+      .def_ro("num_solved", &Status::num_solved,
+              "Periods in which contact was solved.")
+      .def_ro("num_late", &Status::num_late,
+              "Periods that were overrun: the servo went on by the linear "
+              "wrench of the last one.")
+      .def_ro("num_refused", &Status::num_refused, "Handles that were no pose.")
+      .def_ro("is_running", &Status::is_running, "False once closed.");
+
+  nb::class_<PythonContactServo>(
+      m, "ContactServo",
+      "A thread that solves contact for a `UdpServo`, in each of its periods "
+      "with the device's newest handle, and gives it the local wrench, which "
+      "nobody else may do then. It runs without Python; no method but `close` "
+      "waits for it. One thread of the program may use it.")
+      .def(
+          "__init__",
+          [](PythonContactServo* self, PythonUdpServo* servo,
+             const ServoTool& tool) {
+            new (self) PythonContactServo(servo, tool);
+          },
+          nb::arg("servo"), nb::arg("tool"), nb::keep_alive<1, 2>(),
+          nb::sig("def __init__(self, servo: UdpServo, tool: ServoTool) -> "
+                  "None"),
+          "Starts to wait for the first `renew`.\n\n"
+          "Args:\n"
+          "    servo: It answers the device.\n"
+          "    tool: It is copied.")
+      .def("renew", &PythonContactServo::Renew, nb::arg("gains"),
+           nb::arg("F_applied_To_W"),
+           "Says that the loop goes on, and with which coupling and which "
+           "other wrenches (6,) on the tool at To in W, its weight among them. "
+           "Where this is not called in time, the servo releases as its law "
+           "says.")
+      .def("set_share", &PythonContactServo::SetShare, nb::arg("share"),
+           "Shows that part of the wrench, 0 to 1, from the next `renew` on.")
+      .def_prop_ro(
+          "tool_state",
+          [](PythonContactServo& self) { return ToVector(self.tool()); },
+          "(13,) newest pose and velocity of the tool in the world.")
+      .def("status", &PythonContactServo::status,
+           "Returns a `ContactServoStatus`.")
+      .def("close", &PythonContactServo::Close,
+           nb::call_guard<nb::gil_scoped_release>(),
+           "Ends the thread, within a period. May be called again.");
+}
+
+}  // namespace
+
+void BindContactServo(nb::module_& m) {
+  BindServoTool(m);
+  BindThread(m);
+}
+
+}  // namespace drake_haptics

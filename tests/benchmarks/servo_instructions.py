@@ -1,0 +1,138 @@
+"""Counts the instructions of a period in which a servo solves contact.
+
+python tests/benchmarks/servo_instructions.py [SCENE ...]
+
+Needs valgrind; a minute for each scene. The handle moves as recorded, at 4 kHz, in
+contact, under the constraint law. Counted are the core and its binding alone:
+
+* step: query, constraints and the tool's step, `ConstraintStepper`.
+* period: that and the slopes of the wrench, `ServoTool`.
+* answer: of the servo's own thread, which adopts each wrench, `ServoLaw`.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from drake_haptics._core import (
+    ConstraintStepper,
+    CouplingGains,
+    RigidToolDynamics,
+    ServoLaw,
+    ServoTool,
+)
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.evaluation.benchmark.loop.problem import LoopProblem, make_problem
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_by_library,
+    counted,
+    require_valgrind,
+)
+
+PARTS = ("step", "period", "answer")
+# The shipped hands are in contact then.
+_WARM_UP, _TICKS, _PER_TICK = 1200, 300, 4
+_TICK_S = 1e-3
+_PERIOD_S = _TICK_S / _PER_TICK
+_BASE = np.eye(7)[0]
+
+
+def measure(scene: str, part: str) -> float:
+    """Returns the instructions of a part in each period."""
+    counts = count_by_library([__file__, scene, part])
+    core = sum(count for path, count in counts.items() if "/_core." in path)
+    return core / (_TICKS * _PER_TICK)
+
+
+def run_counted(scene: str, part: str) -> None:
+    """Steps until the tool is in contact, and then some ticks counted."""
+    problem = make_problem(scene, _TICK_S * (_WARM_UP + _TICKS + 1))
+    stepper = _make_stepper(problem)
+    tool = ServoTool(stepper, _BASE, _start(problem))
+    law = ServoLaw(max_force_N=8.5, max_torque_Nm=0.5)
+    handles = [
+        _move_on(q, V, k * _PERIOD_S)
+        for q, V in zip(problem.motion.X_WH, problem.motion.V_WH, strict=True)
+        for k in range(_PER_TICK)
+    ]
+    begin, end = _WARM_UP * _PER_TICK, (_WARM_UP + _TICKS) * _PER_TICK
+    states, wrenches = [], []
+    for q, V in handles[:end]:
+        states.append(tool.state.copy())
+        wrenches.append(tool.step(q, V))
+    state = states[begin]
+    again = ServoTool(stepper, _BASE, state)
+    with counted():
+        for i in range(begin, end):
+            q, V = handles[i]
+            if part == "step":
+                stepper.step(states[i][:7], states[i][7:], q, V)
+            elif part == "period":
+                again.step(q, V)
+            else:
+                F, K, B = wrenches[i]
+                law.adopt(F, q, V, K, B, i * _PERIOD_S)
+                law.step(i * _PERIOD_S, q, V)
+
+
+def _make_stepper(problem: LoopProblem) -> ConstraintStepper:
+    scene = problem.scene
+    coupling = scene.coupling
+    stepper = ConstraintStepper(
+        problem.tool.core,
+        [item.core for item in problem.objects],
+        [scene.contact.skin_m] * len(problem.objects),
+        RigidToolDynamics(scene.tool.mass_kg, *problem.mass_properties()),
+        CouplingGains(
+            coupling.stiffness_N_per_m,
+            coupling.damping_Ns_per_m,
+            coupling.rotational_stiffness_Nm_per_rad,
+            coupling.rotational_damping_Nms_per_rad,
+        ),
+        pose_to_vector(problem.X_HT),
+        _PERIOD_S,
+    )
+    for i, X_WO in enumerate(problem.X_WO):
+        stepper.set_object_pose(i, pose_to_vector(X_WO))
+    return stepper
+
+
+def _start(problem: LoopProblem) -> np.ndarray:
+    return np.concatenate([problem.X_WG[0], np.zeros(6)])
+
+
+def _move_on(
+    q: np.ndarray, V: np.ndarray, time_s: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns a handle's pose and velocity a little later."""
+    turn = Rotation.from_rotvec(time_s * V[:3]) * Rotation.from_quat(np.roll(q[:4], -1))
+    return np.concatenate([np.roll(turn.as_quat(), 1), q[4:] + time_s * V[3:]]), V
+
+
+def main() -> None:
+    """Prints a row for each scene; with a part too, is the program counted."""
+    if len(sys.argv) == 3 and sys.argv[2] in PARTS:
+        run_counted(sys.argv[1], sys.argv[2])
+        return
+    try:
+        require_valgrind()
+    except HapticsError as error:
+        sys.exit(str(error))
+    print(f"| instructions | {' | '.join(PARTS)} |")
+    print(f"| --- |{' --: |' * len(PARTS)}")
+    for scene in sys.argv[1:] or ["cup_spoon", "peg_in_hole"]:
+        try:
+            counts = [measure(scene, part) for part in PARTS]
+        except subprocess.CalledProcessError as error:
+            sys.exit(error.stderr)
+        row = " | ".join(f"{count:,.0f}" for count in counts)
+        print(f"| {scene} | {row} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
