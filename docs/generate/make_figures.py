@@ -108,7 +108,7 @@ FIGURES = (
         2,
         timed=True,
     ),
-    _table("numerics", "numerics", 0),
+    _table("verification/numerics", "numerics", 0),
 )
 
 

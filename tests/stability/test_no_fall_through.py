@@ -131,7 +131,9 @@ def test_docs_numerics_tells_of_a_contact_that_chatters_at_rest() -> None:
     counts = np.array([len(t.contacts) for t in held])
     forces = np.array([np.linalg.norm(t.F_contact_W[3:]) for t in held])
     hand_N = np.ptp([t.F_coupling_W[3:] for t in held], axis=0).max()
-    page = (Path(__file__).parents[2] / "docs" / "numerics.md").read_text("utf-8")
+    page = (
+        Path(__file__).parents[2] / "docs" / "verification" / "numerics.md"
+    ).read_text("utf-8")
     text = " ".join(page.split())
     assert f"between {counts.min()} and {counts.max()} contacts" in text
     assert f"on {np.count_nonzero(np.diff(counts))} of {len(held)} ticks" in text

@@ -1,6 +1,6 @@
 """The dialogue with Haply's Inverse Service: its JSON messages and our answers.
 
-Time is an argument, and nothing here opens a connection. Sources: docs/haply.md.
+Time is an argument, and nothing here opens a connection. Sources: docs/reference/haply.md.
 """
 
 from __future__ import annotations
