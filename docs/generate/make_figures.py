@@ -76,8 +76,8 @@ FIGURES = (
     _table(
         "verification/no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"
     ),
-    _table("decomposition", "decomposition", 10, timed=True),
-    _table("troubleshooting", "load", 1, timed=True),
+    _table("verification/decomposition", "decomposition", 10, timed=True),
+    _table("verification/late-ticks", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",
         ((f"{_PROGRAMS}/tick_log_costs.py", "--write"),),
@@ -90,10 +90,10 @@ FIGURES = (
         20,
         timed=True,
     ),
-    _table("accuracy", "accuracy", 15, timed=True),
-    _table("paper", "paper", 3, *_MESHES, timed=True),
+    _table("verification/accuracy", "accuracy", 15, timed=True),
+    _table("verification/paper", "paper", 3, *_MESHES, timed=True),
     Figures(
-        "docs/benchmarks.md",
+        "docs/verification/benchmarks.md",
         (
             ("-c", _BENCH, "bench", *_MESHES, "--json", _BENCH_FIGURES),
             (f"{_PROGRAMS}/write_docs.py", _BENCH_FIGURES),

@@ -3,7 +3,7 @@
 python docs/generate/readme_tables.py --write
 
 The scenes are measured, in two minutes, on a machine that does nothing else. The
-loops are taken from docs/benchmarks.md, written by `docs/generate/write_docs.py`.
+loops are taken from docs/verification/benchmarks.md, which write_docs.py writes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ BENCHMARKS = ROOT / "docs" / "benchmarks.md"
 # The first is the one of `make demo`.
 SCENES = ("cup_spoon", *(name for name in list_scenes() if name != "cup_spoon"))
 DURATION_S = 10.0
-# Rows of docs/benchmarks.md, and what they are called here.
+# Rows of docs/verification/benchmarks.md, and what they are called here.
 LOOPS = {
     "drake_haptics, your own backend, paced": "this package with a device of your own,"
     " at 1 kHz by the clock",
@@ -109,8 +109,10 @@ def make_scenes() -> str:
 
 
 def make_loops() -> str:
-    """Returns whole ticks, ours and of others, from docs/benchmarks.md."""
-    found = read_rows("benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs")
+    """Returns whole ticks, ours and of others, from docs/verification/benchmarks.md."""
+    found = read_rows(
+        "verification/benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs"
+    )
     by_name = {row[0]: row for row in found}
     rows = [
         [called, *(f"{x} µs" for x in by_name[name][1:4])]

@@ -1,6 +1,7 @@
 """The dialogue with Haply's Inverse Service: its JSON messages and our answers.
 
-Time is an argument, and nothing here opens a connection. Sources: docs/reference/haply.md.
+Time is an argument, and nothing here opens a connection. docs/reference/haply.md
+names the sources.
 """
 
 from __future__ import annotations
