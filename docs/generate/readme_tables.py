@@ -32,20 +32,15 @@ LOOPS = {
     " at 1 kHz by the clock",
     "drake_haptics, your own plant, paced": "in a discrete plant of your own, by the"
     " clock",
-    "drake_haptics, simulated device, paced": "with a simulated device, by the clock",
     "drake_haptics, whole tick, paced": "this package at 1 kHz by the clock, as a"
     " device needs it",
-    "Drake, bushing, TAMSI, paced": "Drake by the clock: bushing, point contact on the"
-    " same pieces, TAMSI",
     "drake_haptics, your own backend": "this package with a device of your own",
     "drake_haptics, your own plant": "in a discrete plant of your own",
-    "drake_haptics, simulated device": "with a simulated device",
     "drake_haptics, whole tick": "this package, device to device",
     "drake_haptics, native part": "its C++ core alone",
     "Drake, bushing, TAMSI": "Drake: bushing, point contact on the same pieces, TAMSI",
     "Drake, bushing, SAP": "the same with SAP",
     "MuJoCo, mj_step": "MuJoCo: `mj_step` with the same pieces, timed in C",
-    "Drake, one empty Python system": "Drake: one Python system that does nothing",
 }
 UNDISTURBED = ("p99, undisturbed", "p99.9, undisturbed")
 
