@@ -15,7 +15,7 @@ from drake_haptics.common.pose_vector import pose_to_vector
 
 @dataclass(frozen=True)
 class Clearance:
-    """How much room a tool has where it has least.
+    """The least room that a tool has.
 
     Attributes:
         distance_m: Largest distance from all surfaces at once that the tool can be
@@ -94,7 +94,7 @@ def _find_room(
 def _can_leave(
     n_W: NDArray[np.float64], d: NDArray[np.float64], size_m: float, distance_m: float
 ) -> bool:
-    """Whether a move along the mean normal leads away from all surfaces."""
+    """Tells whether a move along the mean normal leads away from all surfaces."""
     way = n_W.mean(axis=0)
     length = float(np.linalg.norm(way))
     if length < np.finfo(float).eps:

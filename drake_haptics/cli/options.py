@@ -35,7 +35,7 @@ class FiniteRange(click.FloatRange):
         """Returns the number."""
         number: float = super().convert(value, param, ctx)
         if not math.isfinite(number):
-            self.fail(f"{value} is no finite number.", param, ctx)
+            self.fail(f"{value} is not a finite number.", param, ctx)
         return number
 
 
@@ -150,8 +150,8 @@ def require_writable(path: Path, option: str) -> None:
         raise HapticsError(f"{option}: there is no folder {path.parent}")
     if reason := _try_to_open(path):
         raise HapticsError(
-            f"{option}: {path} cannot be written ({reason}); name a file in a folder of"
-            " yours"
+            f"{option}: {path} cannot be written ({reason}); name a file in a folder"
+            " that you can write to"
         )
 
 

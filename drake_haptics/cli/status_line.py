@@ -112,7 +112,7 @@ _LATEST = 1000
 
 
 class StatusLine(LiveLine):
-    """What a run does, in one line.
+    """One line that says what a run does.
 
     Args:
         console: Console to write to.
@@ -216,7 +216,7 @@ class StatusLine(LiveLine):
 
 
 def _shows_force(reading: DeviceReading | None) -> bool:
-    """Whether the device shows what it is asked for."""
+    """Tells whether the device shows what it is asked for."""
     return reading is not None and reading.gate == GateState.ACTIVE
 
 

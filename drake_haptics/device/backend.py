@@ -21,7 +21,7 @@ _Backend = TypeVar("_Backend", bound="DeviceBackend")
 
 
 class GateState(IntEnum):
-    """Whether a device shows force. The numbers are those on the wire."""
+    """Tells whether a device shows force. The numbers are those on the wire."""
 
     IDLE = 0
     """No force; waits to be enabled."""
@@ -49,7 +49,7 @@ class Fault(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class DeviceReading:
-    """What a device last told of itself.
+    """The last state that a device sent.
 
     Attributes:
         sequence: Rises with every new sample; the same again means that nothing new
@@ -109,7 +109,7 @@ class DeviceCommand:
 
 @dataclass(frozen=True)
 class LinkStatus:
-    """How the way to a device does, counted since it was opened.
+    """State of the connection to a device, counted since it was opened.
 
     Attributes:
         received: Samples that came.
@@ -150,12 +150,12 @@ class DeviceBackend(ABC):
 
     @property
     def is_placed(self) -> bool:
-        """Whether it was told where its base stands in the world, and relies on it."""
+        """Tells whether it relies on a pose of its base in the world."""
         return False
 
     @property
     def shows_force(self) -> bool:
-        """Whether it can show any; a mouse cannot."""
+        """Tells whether it can show any; a mouse cannot."""
         return True
 
     @abstractmethod
@@ -171,7 +171,7 @@ class DeviceBackend(ABC):
         """Ends at zero force and gives the device up; may be called again."""
 
     def recover(self) -> None:  # noqa: B027 - most devices have nothing to leave
-        """Takes a device at fault up again: disabled, then enabled by `write`."""
+        """Enables a device at fault again: disabled first, then enabled by `write`."""
 
     def get_link_status(self) -> LinkStatus:
         """Returns how the way to the device does."""

@@ -193,7 +193,7 @@ class DeviceDriver:
             self._socket.close()
 
     def tick(self) -> None:
-        """Does what is to be done in one period."""
+        """Does the work of one period."""
         gate, reading = self._gate, self._reading
         now_ns = self._clock_ns()
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):

@@ -38,7 +38,7 @@ class LocalGate:
 
     @property
     def state(self) -> GateState:
-        """Whether force is shown."""
+        """The state of the gate: whether force is shown."""
         return GateState(int(self._gate.state))
 
     @property

@@ -99,7 +99,7 @@ class UdpDevice(DeviceBackend):
         )
 
     def recover(self) -> None:
-        """Takes a device at fault up again: disabled, then enabled by `write`."""
+        """Enables a device at fault again: disabled first, then enabled by `write`."""
         self._servo.recover()
 
     def close(self) -> None:

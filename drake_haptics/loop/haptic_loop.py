@@ -66,7 +66,7 @@ class BaseSystems:
 
     @property
     def pose_sampler(self) -> PoseSampler | None:
-        """Says where contacts are looked for, if not at every tick."""
+        """System that samples the pose for the query, if not at every tick."""
         return None if self.penalty is None else self.penalty.pose_sampler
 
     @property
@@ -83,14 +83,14 @@ class BaseSystems:
 
     @property
     def clusters(self) -> OutputPort:
-        """What pushes: clusters, or under `contact.law: constraint` contacts."""
+        """The clusters that push, or the contacts of the constraint law."""
         if self.penalty is None:
             return self.haptic_tool.GetOutputPort("contacts")
         return self.penalty.contact_clustering.GetOutputPort("clusters")
 
     @property
     def contact_wrench(self) -> OutputPort:
-        """What each of `clusters` pushes with."""
+        """The wrench of each of `clusters`."""
         return self._answer.GetOutputPort("contact_wrench")
 
     @property
@@ -183,7 +183,7 @@ class HapticLoop(BaseSystems):
 
     @property
     def outputs(self) -> dict[str, OutputPort]:
-        """What there is to see of the loop, by name.
+        """Output ports of the loop, by name.
 
         `BuildHapticDiagram` exports each by this name. In your own diagram each
         can be read, logged, connected or exported like any port.

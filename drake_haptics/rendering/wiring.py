@@ -67,7 +67,7 @@ class RenderingWiring:
 
     @property
     def sources(self) -> dict[str, OutputPort]:
-        """What there is, by the names of the inputs that want it."""
+        """Output ports, by the names of the inputs that need them."""
         asked = {} if self._asked is None else {"F_Ho_W_desired": self._asked}
         return {
             **self.outputs,

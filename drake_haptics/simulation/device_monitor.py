@@ -18,7 +18,7 @@ SILENT_S = 1.0
 
 
 class SilenceMonitor:
-    """For how long a device's driver has said nothing new."""
+    """Time since a device's driver last said something new."""
 
     def __init__(self) -> None:
         self._sequence: int | None = None

@@ -91,7 +91,7 @@ class PageProcess:
         )
 
     def _read(self) -> None:
-        """Takes what the loop has sent."""
+        """Reads what the loop has sent."""
         with suppress(BlockingIOError):
             while packet := self._link.recv(LARGEST_DATAGRAM):
                 if packet.startswith(KIND):

@@ -31,7 +31,7 @@ ClusteringMethod = Literal["shared", "octree"]
 
 @dataclass(frozen=True)
 class ClusteringRule:
-    """Which contacts push, and which count as one; immutable.
+    """The rule of which contacts push, and which count as one; immutable.
 
     Attributes:
         method: "shared" or "octree".

@@ -92,7 +92,7 @@ class DeviceIo(Diagram):
 
 
 class _Frame:
-    """What is said in a device's base frame, in the world, and back."""
+    """Transforms between a device's base frame and the world."""
 
     def __init__(self, X_WB: RigidTransform):
         self._from_base = FrameChange(pose_to_vector(X_WB))

@@ -116,7 +116,7 @@ def _label_knob(knob: _Knob, axes: Axes, get_time_us: Callable[[Row], float]) ->
 
 @dataclass(frozen=True)
 class _Knob:
-    """What of a knob is drawn.
+    """The parts of a knob that are drawn.
 
     Attributes:
         name: Of the knob.

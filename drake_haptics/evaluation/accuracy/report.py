@@ -190,7 +190,7 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
 
 
 def describe_knees(study: AccuracyStudy) -> list[str]:
-    """Says of each knee what it costs beside the scene, and what lies beyond it."""
+    """Describes each knee: its cost beside the scene, and what lies beyond it."""
     # Over time inside the core, which noise disturbs least.
     front = find_front(study, get_native_us)
     scene = find_scene_row(study)

@@ -57,7 +57,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Block:
-    """What belongs together in a section.
+    """Statements and pictures that belong together in a section.
 
     Attributes:
         title: A line; empty where the section's is enough.
@@ -88,12 +88,12 @@ class Section:
 
     @property
     def statements(self) -> list[Statement]:
-        """Those of all blocks."""
+        """All of them, of all blocks."""
         return [statement for block in self.blocks for statement in block.statements]
 
     @property
     def pictures(self) -> list[Picture]:
-        """Those of all blocks."""
+        """All of them, of all blocks."""
         return [picture for block in self.blocks for picture in block.pictures]
 
 

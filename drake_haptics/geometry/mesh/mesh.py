@@ -96,7 +96,7 @@ class Mesh:
     def from_arrays(
         vertices: Any, triangles: Any, *, name: str = "mesh", strict: bool = False
     ) -> Mesh:
-        """Takes in arrays.
+        """Makes a mesh of arrays.
 
         Args:
             vertices: (n, 3) real numbers, m.
