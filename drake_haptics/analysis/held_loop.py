@@ -1,4 +1,4 @@
-"""The loop of a held scene with a coupling of your choice, linearized at rest.
+"""The loop of a held scene with any coupling, linearized at rest.
 
 The hand takes aim again, so that other gains hold the tool in the same contact.
 """

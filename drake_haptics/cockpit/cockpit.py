@@ -1,4 +1,4 @@
-"""The page's side of the loop: greets it, shows each tick, hears what it asks for."""
+"""The loop's side of the page: sends it each tick, and reads its requests."""
 
 from __future__ import annotations
 

@@ -215,7 +215,7 @@ _OF_PAGE = {"mouse:": MOUSE, "meshcat:": SLIDERS}
 
 
 class Holding:
-    """The handle in somebody's hand: the scene's, the mouse's, a device's.
+    """The holder of the handle: the simulated hand, the mouse or a device.
 
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
@@ -253,7 +253,7 @@ class Holding:
 
     @property
     def names(self) -> dict[str, str]:
-        """Who can hold it, and what people read of them."""
+        """The possible holders, with their labels."""
         return self._names
 
     @property
@@ -275,7 +275,7 @@ class Holding:
         return reading is not None and reading.gate == GateState.ACTIVE
 
     def take(self, name: str, X_WH: RigidTransform | None = None) -> None:
-        """Gives the handle to somebody; whoever had it lets go at zero force.
+        """Gives the handle to a holder; the one before lets go at zero force.
 
         Args:
             name: One of `names`.

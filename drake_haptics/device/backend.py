@@ -21,7 +21,7 @@ _Backend = TypeVar("_Backend", bound="DeviceBackend")
 
 
 class GateState(IntEnum):
-    """Tells whether a device shows force. The numbers are those on the wire."""
+    """States of a device's gate. The numbers are those on the wire."""
 
     IDLE = 0
     """No force; waits to be enabled."""
@@ -32,7 +32,7 @@ class GateState(IntEnum):
 
 
 class Fault(IntEnum):
-    """Why a device is in `GateState.FAULT`. The numbers are those on the wire."""
+    """Reasons for `GateState.FAULT`. The numbers are those on the wire."""
 
     NONE = 0
     STALE = 1
@@ -174,7 +174,7 @@ class DeviceBackend(ABC):
         """Enables a device at fault again: disabled first, then enabled by `write`."""
 
     def get_link_status(self) -> LinkStatus:
-        """Returns how the way to the device does."""
+        """Returns the state of the connection to the device."""
         return LinkStatus()
 
     def __enter__(self: _Backend) -> _Backend:

@@ -219,7 +219,7 @@ class DeviceDriver:
     def _move_arm(
         self, F_Ho_B: np.ndarray, gate: GateState, fault: Fault
     ) -> DeviceReading:
-        """Returns what the device is after a period under a wrench."""
+        """Returns the device's reading after a period under a wrench."""
         X_BH, V_BH = self._arm.step(F_Ho_B)
         return DeviceReading(
             sequence=(self._statistics.ticks + 1) % _WRAP,

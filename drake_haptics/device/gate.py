@@ -43,7 +43,7 @@ class LocalGate:
 
     @property
     def fault(self) -> Fault:
-        """Why not, where it is at fault."""
+        """The reason for a fault."""
         return Fault(int(self._gate.fault))
 
     def show(self, F_Ho_B: np.ndarray, now_ns: int) -> None:

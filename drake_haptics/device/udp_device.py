@@ -107,7 +107,7 @@ class UdpDevice(DeviceBackend):
         self._finalizer()
 
     def get_link_status(self) -> LinkStatus:
-        """Returns how the way to the device does."""
+        """Returns the state of the connection to the device."""
         status = self._servo.status()
         return LinkStatus(
             received=status.received,

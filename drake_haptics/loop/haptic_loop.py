@@ -51,17 +51,17 @@ class BaseSystems:
 
     @property
     def contact_query(self) -> ContactQuery:
-        """Finds the contacts; a `SceneError` under `contact.law: constraint`."""
+        """The system that finds contacts, of `contact.law: penalty` alone."""
         return self.require_penalty().contact_query
 
     @property
     def contact_clustering(self) -> ContactClustering:
-        """Shares their stiffness; a `SceneError` under `contact.law: constraint`."""
+        """The system of clusters, of `contact.law: penalty` alone."""
         return self.require_penalty().contact_clustering
 
     @property
     def penalty_force(self) -> PenaltyForce:
-        """Answers them; a `SceneError` under `contact.law: constraint`."""
+        """The system of the force, of `contact.law: penalty` alone."""
         return self.require_penalty().penalty_force
 
     @property
@@ -71,7 +71,7 @@ class BaseSystems:
 
     @property
     def contact_extrapolator(self) -> ContactExtrapolator | None:
-        """Carries contacts along then."""
+        """The system that carries contacts along between two queries."""
         return None if self.penalty is None else self.penalty.contact_extrapolator
 
     @property

@@ -83,7 +83,7 @@ class RenderingWiring:
         materials: Sequence[Material],
         period_s: float,
     ) -> None:
-        """Adds what finds contacts and answers them."""
+        """Adds the systems that find contacts and answer them."""
         found = add_contact_systems(
             self.builder,
             self._tool.pieces,
@@ -177,7 +177,7 @@ class RenderingWiring:
             self.outputs |= _name_outputs(added.passivity)
 
     def add_applied_wrenches(self) -> None:
-        """Adds what makes forces on bodies of all wrenches, after all else."""
+        """Adds, last, the system that turns all wrenches into forces on bodies."""
         applied = self.builder.AddNamedSystem(
             "applied_wrenches",
             AppliedWrenches(

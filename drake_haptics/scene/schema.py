@@ -153,7 +153,7 @@ class JointFrictionParameters:
 
 @dataclass(slots=True)
 class ForceDelayParameters:
-    """A way to the motors that takes whole ticks, on top of the hold.
+    """A delay of whole ticks on the way to the motors, on top of the hold.
 
     Attributes:
         samples: Ticks, at least 1.

@@ -43,7 +43,7 @@ class SilenceMonitor:
 
 
 class DeviceWatch:
-    """The book of a device's faults and of what it showed.
+    """Records a device's faults and its largest loads.
 
     A device at fault shows no force until somebody asks for it again: whoever holds
     it must not be surprised.

@@ -93,7 +93,7 @@ class Telemetry:
 
 
 class TickBuffer:
-    """Takes the loop's ticks until they are sent.
+    """Buffers the loop's ticks until they are sent.
 
     Where nobody takes them for long, the latest are left out.
     """

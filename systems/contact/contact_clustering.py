@@ -1,4 +1,4 @@
-"""Decides what each contact pushes with, given the others."""
+"""Decides with what stiffness each contact pushes, given the others."""
 
 from __future__ import annotations
 

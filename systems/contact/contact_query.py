@@ -42,7 +42,7 @@ _NOTHING = "nothing"
 
 @dataclass(frozen=True)
 class ContactObject:
-    """Something the tool can meet.
+    """An object that the tool can touch.
 
     Attributes:
         name: Unique among the objects; part of port names.

@@ -76,7 +76,7 @@ class HostHandshake:
         return self._phase is _Phase.AT_FAULT
 
     def fall_silent(self) -> None:
-        """Leaves a device alone that says nothing any more.
+        """Stops commanding a device that no longer sends.
 
         What it would be asked for is computed from where its handle was.
         """

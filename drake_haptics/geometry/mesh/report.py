@@ -118,7 +118,7 @@ class MeshReport:
 
     @property
     def refusal(self) -> str:
-        """Why a strict intake refuses the mesh; for one that is unclean."""
+        """The reason why a strict intake refuses an unclean mesh."""
         found = "; ".join(finding.message for finding in self.unclean)
         return (
             f"{self.source}: refused, because a strict intake repairs nothing: "
