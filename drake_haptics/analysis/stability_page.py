@@ -81,7 +81,7 @@ def _describe_nearest_limit(limits: tuple[StiffnessLimits, ...]) -> str:
         f"{where} The limit of the coupling's stiffness of {nearest.kind} is"
         f" {format_limit(nearest.eigenvalue)} {nearest.unit} against {nearest.against};"
         f" the scene has {format_limit(nearest.stiffness)} {nearest.unit}, a margin of"
-        f" {_times(nearest.gain_margin)}."
+        f" {nearest.gain_margin:.3g}."
     )
 
 

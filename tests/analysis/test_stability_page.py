@@ -47,7 +47,7 @@ def write(stability, folder, name="a_scene"):
 def test_a_stable_and_passive_scene(sample):
     assert describe_verdict(sample) == (
         "Stable. The limit of the coupling's stiffness of translation is 16744 N/m"
-        " against a rigid wall; the scene has 800 N/m, a margin of 20.9 times. Passive:"
+        " against a rigid wall; the scene has 800 N/m, a margin of 20.9. Passive:"
         " no hand can be driven into vibration."
     )
 
@@ -72,14 +72,14 @@ def test_limits_that_do_not_exist_are_not_counted(sample, limits):
     words = describe_verdict(replace(sample, limits=limits))
     assert words.startswith("Stable. Passive")
     both = (make_limits(math.inf, "this contact"), make_limits(1600.0))
-    assert "a margin of 2 times" in describe_verdict(replace(sample, limits=both))
+    assert "a margin of 2." in describe_verdict(replace(sample, limits=both))
 
 
 def test_a_limit_below_the_scenes_stiffness_is_a_warning(sample):
     words = describe_verdict(replace(sample, limits=(make_limits(400.0),)))
     assert words.startswith("Stable in this contact, but not against a rigid wall. The")
     assert "of translation is 400 N/m" in words
-    assert "the scene has 800 N/m, a margin of 0.5 times" in words
+    assert "the scene has 800 N/m, a margin of 0.5." in words
 
 
 def test_the_situation_is_told(sample):
