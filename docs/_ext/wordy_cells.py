@@ -15,7 +15,7 @@ from sphinx.transforms import SphinxTransform
 _CLASS = "wordy"  # see reference.css
 _LONGEST_SHORT = 40  # characters
 _MANY = "many-columns"
-_MOST_COLUMNS = 7  # of a table whose letters are as large as the text's
+_MOST_COLUMNS = 6  # of a table whose letters are as large as the text's
 _UPRIGHT = "upright-heads"
 _MOST_LEVEL = 12  # columns whose heads are level
 

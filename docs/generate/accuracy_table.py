@@ -23,7 +23,6 @@ from drake_haptics.cli.console import progress_bar
 from drake_haptics.evaluation.accuracy.budget import (
     BudgetChoice,
     choose_setting,
-    describe_outcome,
     describe_sacrifices,
 )
 from drake_haptics.evaluation.accuracy.costs import measure_p99
@@ -56,7 +55,8 @@ from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
 _DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE = _DOCS / "accuracy.md"
+PAGE = _DOCS / "verification" / "accuracy.md"
+ADVICE_PAGE = _DOCS / "accuracy.md"
 PICTURE = _DOCS / "accuracy_cup_spoon.png"
 SCENES = ("cup_spoon", "rubbed_sphere")
 BUDGET_SCENES = (*SCENES, "torus_peg")
@@ -64,7 +64,7 @@ _BUDGET_RUNS = 3
 # Of the scene's own p99: a budget that costs something.
 _BUDGET_SHARE = 0.8
 _BUDGET_STEP_US = 10.0
-COLUMNS_NAME, BUDGETS_NAME = "columns", "budgets"
+COLUMNS_NAME, BUDGETS_NAME, ADVICE_NAME = "columns", "budgets", "advice"
 BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")
 # Knob, setting, and times of tick and core are before the errors; energy is the last.
 ERRORS = slice(4, 8)
@@ -96,6 +96,14 @@ def make_prices(study: AccuracyStudy) -> str:
     return "\n".join(part for part in parts if part)
 
 
+def make_advice(studies: dict[str, AccuracyStudy]) -> str:
+    """Returns what to set in each scene, and why, as a list."""
+    return "".join(
+        f"- **{name}**: {' '.join(describe_verdict(study))}\n"
+        for name, study in studies.items()
+    )
+
+
 def make_budgets(choices: dict[str, BudgetChoice]) -> str:
     """Returns what was given up for budgets, a row for each scene."""
     rows = []
@@ -108,7 +116,7 @@ def make_budgets(choices: dict[str, BudgetChoice]) -> str:
                 f"{choice.budget_us:g}",
                 f"{choice.trial.middle_us:.0f}",
                 f"{choice.trial.scene_us:.0f}",
-                "; ".join(lost) if choice.holds else describe_outcome(choice, name),
+                "; ".join(lost) if choice.holds else "not reachable",
             ]
         )
     return to_markdown([BUDGET_HEADINGS, *rows])
@@ -243,6 +251,10 @@ def main() -> None:
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
         write_page(PAGE, with_parts(page, parts), __file__)
+        advice = replace_part(
+            ADVICE_PAGE.read_text(encoding="utf-8"), make_advice(studies), ADVICE_NAME
+        )
+        ADVICE_PAGE.write_text(advice, encoding="utf-8")
         draw_study(studies[SCENES[0]]).savefig(PICTURE, dpi=_DPI)
 
 

@@ -77,8 +77,8 @@ FIGURES = (
         "verification/no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"
     ),
     _table("comparison", "thread", 3, timed=True),
-    _table("decomposition", "decomposition", 10, timed=True),
-    _table("troubleshooting", "load", 1, timed=True),
+    _table("verification/decomposition", "decomposition", 10, timed=True),
+    _table("verification/late-ticks", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",
         ((f"{_PROGRAMS}/tick_log_costs.py", "--write"),),
@@ -91,10 +91,10 @@ FIGURES = (
         20,
         timed=True,
     ),
-    _table("accuracy", "accuracy", 15, timed=True),
-    _table("paper", "paper", 3, *_MESHES, timed=True),
+    _table("verification/accuracy", "accuracy", 15, timed=True),
+    _table("verification/paper", "paper", 3, *_MESHES, timed=True),
     Figures(
-        "docs/benchmarks.md",
+        "docs/verification/benchmarks.md",
         (
             ("-c", _BENCH, "bench", *_MESHES, "--json", _BENCH_FIGURES),
             (f"{_PROGRAMS}/write_docs.py", _BENCH_FIGURES),
@@ -109,7 +109,7 @@ FIGURES = (
         2,
         timed=True,
     ),
-    _table("numerics", "numerics", 0),
+    _table("verification/numerics", "numerics", 0),
 )
 
 

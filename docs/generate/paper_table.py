@@ -1,4 +1,4 @@
-"""Writes the paper's evaluation, made again, into docs/paper.md with its pictures.
+"""Writes the paper's evaluation, made again, into docs/verification/paper.md.
 
 python docs/generate/paper_table.py --write --meshes FOLDER
 
@@ -13,7 +13,7 @@ import re
 import sys
 from pathlib import Path
 
-from page_parts import make_parser, read_part, replace_part
+from page_parts import make_parser, read_part, replace_part, to_markdown
 from page_stamp import amend_page, write_page
 from PIL import Image
 
@@ -25,6 +25,7 @@ from drake_haptics.evaluation.paper.evaluation import (
 from drake_haptics.evaluation.paper.report import (
     Picture,
     Section,
+    count_verdicts,
     describe_machine_line,
     make_sections,
     summarize,
@@ -32,7 +33,8 @@ from drake_haptics.evaluation.paper.report import (
 from drake_haptics.report.page import draw_png
 
 _DOCS = Path(__file__).parents[2] / "docs"
-PAGE = _DOCS / "paper.md"
+PAGE = _DOCS / "verification" / "paper.md"
+SUMMARY_PAGE = _DOCS / "paper.md"
 _DPI, _COLORS = 80, 128
 # Heads of columns, and words of sentences, in which times are.
 _TIMED_COLUMN = re.compile(r"µs|seconds|Hz|under 1 ms|^(query|force|whole tick)$")
@@ -52,7 +54,7 @@ def show_section(section: Section) -> str:
             parts.append(f"### {block.title}\n")
         lines = (f"- **{s.verdict}**: {s.text}\n" for s in block.statements)
         parts.append("".join(lines))
-        parts += [f"![{p.alt}]({file_of(p)})\n" for p in block.pictures]
+        parts += [f"![{p.alt}](../{file_of(p)})\n" for p in block.pictures]
     parts += [table.to_markdown() for table in section.tables]
     return "\n".join(parts)
 
@@ -63,6 +65,13 @@ def with_figures(page: str, evaluation: PaperEvaluation) -> str:
     parts = [f"{summarize(sections)} {describe_machine_line(evaluation)}\n"]
     parts += map(show_section, sections)
     return replace_part(page, "\n".join(parts))
+
+
+def make_summary(evaluation: PaperEvaluation) -> str:
+    """Returns how many statements have which verdict, as a sentence and a table."""
+    sections = make_sections(evaluation)
+    counts = count_verdicts(sections)
+    return f"{summarize(sections)}\n\n{to_markdown([counts.header, *counts.rows])}"
 
 
 def keep_times(new: str, old: str) -> str:
@@ -131,6 +140,9 @@ def main() -> None:
         amend_page(PAGE, page, __file__, "all but times and pictures")
         return
     write_page(PAGE, page, __file__)
+    summary = SUMMARY_PAGE.read_text(encoding="utf-8")
+    text = make_summary(evaluation)
+    SUMMARY_PAGE.write_text(replace_part(summary, text, "summary"), encoding="utf-8")
     write_pictures(evaluation)
 
 

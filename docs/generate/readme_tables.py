@@ -3,7 +3,7 @@
 python docs/generate/readme_tables.py --write
 
 The scenes are measured, in two minutes, on a machine that does nothing else. The
-loops are taken from docs/benchmarks.md, written by `docs/generate/write_docs.py`.
+loops are taken from docs/verification/benchmarks.md, which write_docs.py writes.
 """
 
 from __future__ import annotations
@@ -26,26 +26,21 @@ BENCHMARKS = ROOT / "docs" / "benchmarks.md"
 # The first is the one of `make demo`.
 SCENES = ("cup_spoon", *(name for name in list_scenes() if name != "cup_spoon"))
 DURATION_S = 10.0
-# Rows of docs/benchmarks.md, and what they are called here.
+# Rows of docs/verification/benchmarks.md, and what they are called here.
 LOOPS = {
     "drake_haptics, your own backend, paced": "this package with a device of your own,"
     " at 1 kHz by the clock",
     "drake_haptics, your own plant, paced": "in a discrete plant of your own, by the"
     " clock",
-    "drake_haptics, simulated device, paced": "with a simulated device, by the clock",
     "drake_haptics, whole tick, paced": "this package at 1 kHz by the clock, as a"
     " device needs it",
-    "Drake, bushing, TAMSI, paced": "Drake by the clock: bushing, point contact on the"
-    " same pieces, TAMSI",
     "drake_haptics, your own backend": "this package with a device of your own",
     "drake_haptics, your own plant": "in a discrete plant of your own",
-    "drake_haptics, simulated device": "with a simulated device",
     "drake_haptics, whole tick": "this package, device to device",
     "drake_haptics, native part": "its C++ core alone",
     "Drake, bushing, TAMSI": "Drake: bushing, point contact on the same pieces, TAMSI",
     "Drake, bushing, SAP": "the same with SAP",
     "MuJoCo, mj_step": "MuJoCo: `mj_step` with the same pieces, timed in C",
-    "Drake, one empty Python system": "Drake: one Python system that does nothing",
 }
 UNDISTURBED = ("p99, undisturbed", "p99.9, undisturbed")
 
@@ -109,8 +104,10 @@ def make_scenes() -> str:
 
 
 def make_loops() -> str:
-    """Returns whole ticks, ours and of others, from docs/benchmarks.md."""
-    found = read_rows("benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs")
+    """Returns whole ticks, ours and of others, from docs/verification/benchmarks.md."""
+    found = read_rows(
+        "verification/benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs"
+    )
     by_name = {row[0]: row for row in found}
     rows = [
         [called, *(f"{x} µs" for x in by_name[name][1:4])]

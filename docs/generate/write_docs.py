@@ -1,4 +1,4 @@
-"""Writes the figures of a run into docs/benchmarks.md.
+"""Writes the figures of a run into docs/verification/benchmarks.md.
 
 drake-haptics bench --json figures.json
 python docs/generate/write_docs.py figures.json
@@ -23,7 +23,7 @@ from drake_haptics.evaluation.benchmark.benchmark import (
     missing_lines,
 )
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "verification" / "benchmarks.md"
 _END = "<!-- end of figures -->\n"
 
 

@@ -55,7 +55,7 @@ class AxisHand:
 
 @dataclass(frozen=True)
 class GripMargins:
-    """How far from its limits a coupling is in one grip.
+    """Margins of a coupling in one grip.
 
     Attributes:
         grip: Its name.

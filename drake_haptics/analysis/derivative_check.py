@@ -46,10 +46,10 @@ def check_derivatives(
     columns = np.array(
         [(wrong & _compare(function, jacobian, axis)).any() for axis in np.diag(sizes)]
     )
+    changes = f"{_list(row_names, wrong)} changes with {_list(column_names, columns)}"
     raise ValueError(
-        "derivatives are lost, or the system is not smooth here: how"
-        f" {_list(row_names, wrong)} changes with {_list(column_names, columns)} is"
-        " otherwise in AutoDiffXd than by differences of doubles. A system that takes"
+        "derivatives are lost, or the system is not smooth here: AutoDiffXd and"
+        f" differences of doubles disagree on how {changes}. A system that takes"
         " values out of AutoDiffXd (ExtractValue, float) must put their gradient back;"
         " at a kink, as where a contact just opens, move the state off it"
     )

@@ -42,7 +42,7 @@ _LEAST_DECREASE = 1e-4
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Where a diagram stays.
+    """A state that one period leaves as it is.
 
     Attributes:
         context: A root context there, apart from the state as the user's.

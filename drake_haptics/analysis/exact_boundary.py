@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BoundaryPoint:
-    """A point of the boundary: a spring and damper that oscillate for ever.
+    """A point of the boundary: a spring and damper that oscillate forever.
 
     Attributes:
         alpha: K T²/m.

@@ -1,4 +1,4 @@
-"""The loop of a held scene with a coupling of your choice, linearized at rest.
+"""The loop of a held scene with any coupling, linearized at rest.
 
 The hand takes aim again, so that other gains hold the tool in the same contact.
 """
@@ -55,7 +55,7 @@ _NO_LOAD = 1e-9
 
 @dataclass(frozen=True)
 class _Aim:
-    """Where handle and hand must be, and what the handle is shown."""
+    """Poses of handle and hand, and the wrench that the handle is shown."""
 
     X_WH: RigidTransform
     X_WP: RigidTransform
@@ -195,7 +195,7 @@ class HeldLoop:
 
     @property
     def growth(self) -> float:
-        """By how much the fastest growing motion is multiplied in a tick."""
+        """Factor by which a tick multiplies the fastest growing motion."""
         return calc_growth(self.linearization.eigenvalues())
 
     @on_one_blas_thread

@@ -151,7 +151,7 @@ _MOST_NAMED = 3
 
 
 class ModeKind(enum.Enum):
-    """What an eigenvalue means."""
+    """The meaning of an eigenvalue."""
 
     MOTION = "motion"
     """Grows, or dies out, swinging or not."""
@@ -190,7 +190,7 @@ class Mode:
 
     @property
     def frequency_hz(self) -> float:
-        """Of the swing, Hz: 0 for one without, at most half the sampling rate."""
+        """Frequency of the swing, Hz: 0 without one, at most half the sampling rate."""
         angle = math.atan2(self.eigenvalue.imag, self.eigenvalue.real)
         return abs(angle) / (2.0 * math.pi * self.period_s)
 
@@ -204,7 +204,7 @@ class Mode:
 
     @property
     def decay_time_s(self) -> float:
-        """Time in which it falls to 2 %, s; infinite if it does not fall."""
+        """Time in which the motion falls to 2 %, s; infinite if it does not fall."""
         magnitude = abs(self.eigenvalue)
         if magnitude == 0.0:
             return 0.0

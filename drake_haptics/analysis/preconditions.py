@@ -39,7 +39,7 @@ def check_system_and_context(diagram: System, context: Context) -> None:
         RuntimeError: The context is of another system.
     """
     require_kinds(
-        "of what BuildHapticDiagram gives it is .diagram", diagram=(diagram, System)
+        "BuildHapticDiagram returns one in .diagram", diagram=(diagram, System)
     )
     require_kinds(
         "Simulator.get_context() is one, as is diagram.CreateDefaultContext()",
@@ -179,7 +179,7 @@ def _say_suspects(system: System) -> str:
 
 
 def _is_own(leaf: System) -> bool:
-    """Whether a system is written by a user, as Drake's own do nothing of the kind."""
+    """Tells whether a system is a user's: Drake's own do nothing of the kind."""
     return not type(leaf).__module__.startswith("pydrake.")
 
 

@@ -26,7 +26,7 @@ from drake_haptics.common.one_line import one_line
 
 @dataclass(frozen=True)
 class SampledValues:
-    """What one period makes of a state: values, or their derivatives.
+    """The values that one period makes of a state, or their derivatives.
 
     Attributes:
         update: (n_d,) x_d⁺, the discrete groups after the update at t from x(t⁻); or

@@ -1,4 +1,4 @@
-"""All that can be said about a scene's stability where its tool is held in contact."""
+"""Analyzes a scene's stability where its tool is held in contact."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _BEYOND = 1.5
 
 @dataclass(frozen=True)
 class SceneStability:
-    """How stable a scene's loop is with its device in its hand, at one place.
+    """Stability of a scene's loop at one place, with its device in its hand.
 
     Attributes:
         scene: The scene, its hand stopped.
@@ -98,12 +98,12 @@ class SceneStability:
 
     @property
     def is_stable(self) -> bool:
-        """Whether every motion dies out."""
+        """Tells whether every motion dies out."""
         return self.growth < 1.0
 
     @property
     def is_passive(self) -> bool:
-        """Whether no hand, however it holds, can be driven into motion."""
+        """Tells whether no hand, however it holds, can be driven into motion."""
         return bool(self.damping_usage.max() <= 1.0)
 
     def plot(self) -> Figure:

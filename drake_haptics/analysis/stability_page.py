@@ -64,27 +64,24 @@ def describe_verdict(stability: SceneStability) -> str:
             " damping of device and hand would be needed, so that some other hand may"
             " be driven into vibration."
         )
-    return f"Stable{_describe_room(stability.limits)}. {second}"
+    return f"{_describe_nearest_limit(stability.limits)} {second}"
 
 
-def _describe_room(limits: tuple[StiffnessLimits, ...]) -> str:
-    """Says how far the nearest limit is, if there is one."""
+def _describe_nearest_limit(limits: tuple[StiffnessLimits, ...]) -> str:
+    """Says that the scene is stable, with the nearest limit if there is one."""
     nearest = min(limits, key=lambda limit: limit.gain_margin, default=None)
     if nearest is None or math.isinf(nearest.gain_margin):
-        return ""
-    which = (
-        f"the coupling's stiffness of {nearest.kind},"
-        f" {format_limit(nearest.stiffness)} {nearest.unit},"
+        return "Stable."
+    where = (
+        "Stable."
+        if nearest.gain_margin >= 1.0
+        else f"Stable in this contact, but not against {nearest.against}."
     )
-    limit = f"{format_limit(nearest.eigenvalue)} {nearest.unit}"
-    if nearest.gain_margin >= 1.0:
-        return (
-            f"; {which} could be {nearest.gain_margin:.3g} times as large, {limit},"
-            f" against {nearest.against}"
-        )
     return (
-        f" in this contact; but against {nearest.against} {which} would be stable only"
-        f" below {limit}, {nearest.gain_margin:.3g} of what it is"
+        f"{where} The limit of the coupling's stiffness of {nearest.kind} is"
+        f" {format_limit(nearest.eigenvalue)} {nearest.unit} against {nearest.against};"
+        f" the scene has {format_limit(nearest.stiffness)} {nearest.unit}, a margin of"
+        f" {nearest.gain_margin:.3g}."
     )
 
 
@@ -138,12 +135,13 @@ def _choose_class(stability: SceneStability) -> str:
 
 
 def _make_limits(stability: SceneStability) -> _Table:
-    header = ["", "scene", "eigenvalue", "simulation", "one axis", "formula"]
+    header = ["", "scene", "margin", "eigenvalue", "simulation", "one axis", "formula"]
     header.append("what limits it")
     rows = [
         [
             f"{limit.kind}, {limit.against}, {limit.unit}",
             format_limit(limit.stiffness),
+            _times(limit.gain_margin),
             format_limit(limit.eigenvalue),
             format_limit(limit.simulated),
             format_limit(limit.one_axis),
@@ -156,23 +154,16 @@ def _make_limits(stability: SceneStability) -> _Table:
 
 
 def _make_margins(stability: SceneStability) -> _Table:
-    rows = [
-        [
-            f"stiffness of {limit.kind}, {limit.against}",
-            _times(limit.gain_margin),
-        ]
-        for limit in stability.limits
-    ]
-    rows.append(["further delay", describe_delay(stability)])
     worst = int(stability.damping_usage.argmax())
-    rows.append(
+    rows = [
+        ["further delay of the force", describe_delay(stability)],
         [
-            "damping that passivity needs, of what there is",
+            "damping that passivity needs, of that of device and hand",
             f"{_percent(float(stability.damping_usage[worst]))} at"
             f" {stability.felt.frequencies_Hz[worst]:.3g} Hz",
-        ]
-    )
-    rows.append(["growth per tick", f"{stability.growth:.6f}"])
+        ],
+        ["growth of a disturbance in a tick", f"{stability.growth:.6f} times"],
+    ]
     return ["", "margin"], rows
 
 

@@ -82,13 +82,13 @@ def _plot_usage(frequencies_Hz: np.ndarray, usage: np.ndarray, axes: Axes) -> No
         color=PASSIVITY,
         label="passivity: damping that it needs",
     )
-    axes.axhline(1.0, color="black", ls=":", label="the scene's: what there is")
+    axes.axhline(1.0, color="black", ls=":", label="the scene's damping")
     axes.set_xlim(0.0, frequencies_Hz[-1])
     most = max(1.0, float(usage.max()))
     axes.set_ylim(min(0.0, float(usage.min())), 1.2 * most)
     axes.set_xlabel("frequency, Hz")
-    axes.set_ylabel("damping, as a share of what there is")
-    axes.set_title("passive with every hand: needed below what there is")
+    axes.set_ylabel("needed damping, as a share of the scene's")
+    axes.set_title("passive with every hand: the curve is below 1")
     _put_legend_below(axes)
 
 

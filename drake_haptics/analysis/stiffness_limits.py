@@ -75,12 +75,12 @@ class StiffnessLimits:
 
     @property
     def unit(self) -> str:
-        """Of all stiffnesses."""
+        """Unit of all stiffnesses."""
         return "N/m" if self.kind == "translation" else "N·m/rad"
 
     @property
     def gain_margin(self) -> float:
-        """By what the scene's stiffness could be multiplied."""
+        """The largest stable stiffness over the scene's."""
         return self.eigenvalue / self.stiffness
 
     def to_dict(self) -> dict[str, Any]:

@@ -32,7 +32,7 @@ _PALE = 0.25
 
 @dataclass(frozen=True)
 class HeldBounds:
-    """What theory says of a sampled spring and damper on a held device.
+    """Bounds from theory on a sampled spring and damper of a held device.
 
     Attributes:
         held_damping: b of device and hand, N·s/m or N·m·s/rad.
@@ -164,7 +164,7 @@ def _plot_bounds(
     missing = np.ma.masked_invalid(passive_damping - bounds.held_damping)
     if (missing <= 0.0).any() and (missing > 0.0).any():
         axes.contour(K, B, missing, levels=[0.0], colors=[PASSIVITY])
-        label = "passivity: of what the loop feels like"
+        label = "passivity: of the felt impedance"
         axes.plot([], [], color=PASSIVITY, label=label)
 
 
@@ -192,7 +192,7 @@ def _rises_by_a_factor(values: np.ndarray) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class ZWidth:
-    """By how much the fastest growing motion grows per period, over K and B.
+    """Growth per period of the fastest growing motion, over K and B.
 
     The dynamic range of impedances that a device renders stably is its Z-width (Colgate
     and Brown 1994). Units are those of translation, or N·m/rad and N·m·s/rad.

@@ -282,7 +282,7 @@ def question_start(haptic: HapticDiagram) -> list[str]:
         elif _is_inside(
             haptic.tool, part, item.pose.to_rigid_transform().inverse() @ X_WT
         ):
-            how = f"inside '{item.name}', out of which nothing leads it"
+            how = f"inside '{item.name}', and no contact leads it out"
         else:
             continue
         sentences.append(f"the tool starts {how}: {remedy}")
@@ -318,7 +318,7 @@ def _make_query(haptic: HapticDiagram) -> ContactQuery:
 
 
 def _is_inside(tool: Decomposition, part: Decomposition, X_OT: RigidTransform) -> bool:
-    """Whether all of the tool is in the solid, where no surface is near to push it."""
+    """Tells whether the whole tool is in the solid, with no surface near to push."""
     solid = part.mesh.triangles[part.mesh.solid.astype(bool)]
     step = max(1, len(tool.mesh.vertices) // _VERTICES)
     p_TV = tool.mesh.vertices[::step]

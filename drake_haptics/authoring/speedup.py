@@ -63,7 +63,8 @@ def find_key_that_helps(costs_us: Mapping[str, float], scene: Scene) -> str | No
         return None
     key = _find_key(name, scene)
     return (
-        f"Of what a key makes less, {name} takes most, {costs_us[name]:.0f} µs: {key}."
+        f"Of the parts that a key can shorten, {name} takes most,"
+        f" {costs_us[name]:.0f} µs: {key}."
     )
 
 
@@ -81,7 +82,7 @@ def _find_key(name: str, scene: Scene) -> str | None:
     if name == "haptic_visualizer":
         return "device.tick_budget_us leaves drawing out of ticks that take longer"
     if name in _EFFECTS:
-        return f"the scene does without it if {_EFFECTS[name]} is not in it"
+        return f"take {_EFFECTS[name]} out of the scene if it can do without"
     return None
 
 

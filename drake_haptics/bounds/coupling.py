@@ -32,7 +32,7 @@ class SpringAndDamper(Protocol):
 
 @dataclass(frozen=True)
 class HeldHandle:
-    """What device and hand are at the handle, together.
+    """Mass, damping and stiffness of device and hand together, at the handle.
 
     Attributes:
         mass_kg: The least in any direction, kg.

@@ -84,7 +84,7 @@ def find_real_bounds(
 
 
 def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
-    """Returns what a preset's arm at its default angles is in the loosest grip.
+    """Returns the held handle of a preset's arm at its default angles, loosely gripped.
 
     Args:
         scene: Its tool is grasped.
@@ -123,7 +123,7 @@ def calc_force_delay(scene: Scene) -> float:
 def calc_scene_handle(
     scene: Scene, device: HapticDevice, root: Context | None = None
 ) -> HeldHandle:
-    """Returns what a scene's simulated device in its hand is where it holds the tool.
+    """Returns the held handle of a scene's simulated device where it holds the tool.
 
     Args:
         scene: Names preset, grip and grasp.

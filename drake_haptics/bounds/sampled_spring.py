@@ -114,7 +114,7 @@ def calc_sampled_damping(mass: float, stiffness: float, period_s: float) -> floa
 def calc_returnable_energy(
     springs: Iterable[tuple[float, float]], tool_mass_kg: float, lift_J: float = 0.0
 ) -> float:
-    """Returns the energy that a virtual world can honestly give back to a device, J.
+    """Returns the energy that a passive virtual world can return to a device, J.
 
     That of its springs, F²/(2 K) each, of the tool's motion, and of its weight. It is
     the `reserve_J` of a `PassivityControl`: a larger balance comes of dissipation.

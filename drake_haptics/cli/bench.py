@@ -33,7 +33,7 @@ from drake_haptics.evaluation.benchmark.outside_library import load_library
     "libraries",
     multiple=True,
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Measure yours too: a Python file with a subclass of OutsideLibrary.",
+    help="Measure your library too: a Python file with a subclass of OutsideLibrary.",
 )
 @json_option
 def bench(

@@ -15,7 +15,7 @@ from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.mesh.units import METERS_PER_UNIT
 
 _ADDRESSES = {
-    "udp://127.0.0.1:7400": "a driver, as `drake-haptics device` is one",
+    "udp://127.0.0.1:7400": "a driver, such as `drake-haptics device`",
     "mouse:": "the mouse, on the page",
     "meshcat:": "sliders and gamepad, on the page",
     "haply://127.0.0.1": "Haply's service",

@@ -21,7 +21,7 @@ from drake_haptics.common.errors import HapticsError
 
 
 class ExitCode(IntEnum):
-    """The same for all commands.
+    """Exit codes of all commands.
 
     Attributes:
         DONE: The command is done. `run`, `device` and `decompose --show` end this way

@@ -96,7 +96,7 @@ class LiveLine:
 
 
 def _make_text(line: str, width: int) -> Text:
-    """Returns as many parts of a line as a terminal has room for; cut if one is not."""
+    """Returns as many parts of a line as fit into a terminal."""
     parts = [Text.from_markup(part) for part in line.split(_BETWEEN)]
     while len(parts) > 1 and Text(_BETWEEN).join(parts).cell_len > width:
         parts.pop()

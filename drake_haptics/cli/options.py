@@ -35,7 +35,7 @@ class FiniteRange(click.FloatRange):
         """Returns the number."""
         number: float = super().convert(value, param, ctx)
         if not math.isfinite(number):
-            self.fail(f"{value} is no finite number.", param, ctx)
+            self.fail(f"{value} is not a finite number.", param, ctx)
         return number
 
 
@@ -150,8 +150,8 @@ def require_writable(path: Path, option: str) -> None:
         raise HapticsError(f"{option}: there is no folder {path.parent}")
     if reason := _try_to_open(path):
         raise HapticsError(
-            f"{option}: {path} cannot be written ({reason}); name a file in a folder of"
-            " yours"
+            f"{option}: {path} cannot be written ({reason}); name a file in a folder"
+            " that you can write to"
         )
 
 
@@ -187,8 +187,9 @@ def write_json(data: dict[str, Any], file: str) -> None:
         raise OSError(error.errno, error.strerror, file) from error
 
 
-# A scale that the library asks for, as a key of a scene or an argument.
-_SCALE = re.compile(r"(tool|environment)(?:\[0\]\.|\.|_)scale(?:: |=)([\d.e-]+)")
+# A scale that the library asks for, as an argument or a key of a scene.
+_SCALE_ARGUMENT = re.compile(r"(tool|environment)_scale=([\d.e-]+)")
+_SCALE_KEY = re.compile(r"(tool|environment)(?:\[0\])?\.scale: ([\d.e-]+)")
 
 
 def set_option(function: _Function) -> _Function:
@@ -246,4 +247,7 @@ def write_call(command: str, scene: str, settings: Sequence[str]) -> str:
 
 def name_scale_options(words: str) -> str:
     """Returns words of the library with the options of the scales that they ask for."""
-    return _SCALE.sub(r"\g<0> (with --tool and --environment: --\1-scale \2)", words)
+    words = _SCALE_ARGUMENT.sub(r"--\1-scale \2", words)
+    return _SCALE_KEY.sub(
+        r"\g<0> (with --tool and --environment: --\1-scale \2)", words
+    )

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import cast
 
 import click
+from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table as RichTable
 
@@ -27,12 +28,13 @@ from drake_haptics.evaluation.paper.evaluation import (
     evaluate_paper,
 )
 from drake_haptics.evaluation.paper.report import (
+    count_verdicts,
     describe_machine_line,
     make_sections,
     summarize,
     write_paper_page,
 )
-from drake_haptics.report.page import check_page_path
+from drake_haptics.report.page import Table, check_page_path
 
 _STYLES = {
     "agrees": "green",
@@ -87,18 +89,7 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
     for section in sections:
         console.print(f"[bold]{section.title}[/]")
         for table in section.tables:
-            shown = RichTable(box=None, title=table.title, title_justify="left")
-            first, *others = table.header
-            shown.add_column(first, no_wrap=True)
-            for heading in others:
-                shown.add_column(heading, justify="right", no_wrap=True)
-            for row in table.rows:
-                shown.add_row(*row)
-            # A wider one is read on the page.
-            options = console.options.update(max_width=_ANY_WIDTH)
-            if Measurement.get(console, options, shown).maximum <= console.width:
-                console.print(shown)
-                console.print(table.note, style="dim")
+            _print_table(console, table)
         for block in section.blocks:
             if block.title:
                 console.print(block.title)
@@ -106,6 +97,7 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
                 style = _STYLES[statement.verdict]
                 console.print(f"[{style}]{statement.verdict:>12}[/]  {statement.text}")
         console.print()
+    _print_table(console, count_verdicts(sections))
     console.print(summarize(sections))
     console.print(describe_machine_line(evaluation), style="dim")
     console.print(
@@ -113,3 +105,18 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
         soft_wrap=True,
         markup=False,
     )
+
+
+def _print_table(console: Console, table: Table) -> None:
+    """Prints a table, if the terminal is wide enough; wider ones are on the page."""
+    shown = RichTable(box=None, title=table.title, title_justify="left")
+    first, *others = table.header
+    shown.add_column(first, no_wrap=True)
+    for heading in others:
+        shown.add_column(heading, justify="right", no_wrap=True)
+    for row in table.rows:
+        shown.add_row(*row)
+    options = console.options.update(max_width=_ANY_WIDTH)
+    if Measurement.get(console, options, shown).maximum <= console.width:
+        console.print(shown)
+        console.print(table.note, style="dim")

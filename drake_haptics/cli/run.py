@@ -35,14 +35,14 @@ _EXPLAINED_S = 2.0
     "--environment",
     metavar="MESH",
     shell_complete=complete_file,
-    help="Instead of SCENE: mesh file of what it meets.",
+    help="Instead of SCENE: mesh file of the environment.",
 )
 @unit_option("both mesh files")
 @click.option(
     "--tool-scale",
     type=FiniteRange(0, min_open=True),
     metavar="METERS",
-    help="Meters per unit of the tool's file, where it has a unit of its own.",
+    help="Meters per unit of the tool's file, if it differs from the environment's.",
 )
 @click.option(
     "--environment-scale",
@@ -68,7 +68,7 @@ _EXPLAINED_S = 2.0
 @click.option(
     "--headless",
     is_flag=True,
-    help="No page, and without --device as fast as the computer can.",
+    help="Show no page; without --device, run as fast as the computer can.",
 )
 @click.option(
     "--explain",
@@ -79,7 +79,7 @@ _EXPLAINED_S = 2.0
 )
 @file_option(
     "--record",
-    help="Write what is to be seen as one HTML file that plays in any browser.",
+    help="Write the view as one HTML file that plays in any browser.",
 )
 @file_option(
     "--log",

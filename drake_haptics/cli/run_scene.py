@@ -147,7 +147,7 @@ def run_scene(
     files = [Path(file).absolute() for file in written if file]
     if len(set(files)) < len(files):
         raise HapticsError(
-            "--record, --log, --write-scene and --json: each needs a file of its own"
+            "--record, --log, --write-scene and --json: each needs its own file"
         )
     if log is not None and device == f"replay:{log}":
         raise HapticsError(
@@ -194,7 +194,7 @@ def run_scene(
         if log is not None:
             console.print(f"Wrote {log}.", soft_wrap=True, markup=False)
         if scene_file is not None:
-            head = f"Of {name}, with all its keys: written by drake-haptics run."
+            head = f"{name} with all its keys, written by drake-haptics run."
             write_scene(session.scene, scene_file, [head])
             again = shlex.join(["drake-haptics", "run", str(scene_file)])
             console.print(f"Wrote {scene_file}: {again}", soft_wrap=True, markup=False)

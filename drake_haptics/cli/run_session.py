@@ -113,7 +113,7 @@ def _build(
 
 @dataclass(frozen=True)
 class Session:
-    """What came of a run.
+    """The outcome of a run.
 
     Attributes:
         haptic: The diagram that ran last.
@@ -282,7 +282,7 @@ def _address_in_words(device: str | None) -> Iterator[None]:
 
 
 class _Onlookers:
-    """Those who look at every tick: the status line, the device's watch, the timer."""
+    """The monitors of every tick: the status line, the device's watch, the timer."""
 
     def __init__(
         self,

@@ -35,7 +35,7 @@ _STYLES = {
 
 
 def describe_gate(
-    reading: DeviceReading | None, remedy: str = "Enter takes it up again"
+    reading: DeviceReading | None, remedy: str = "Enter enables it again"
 ) -> str:
     """Returns whether a device shows force, and if not, why and what to do.
 
@@ -112,7 +112,7 @@ _LATEST = 1000
 
 
 class StatusLine(LiveLine):
-    """What a run does, in one line.
+    """One line that says what a run does.
 
     Args:
         console: Console to write to.
@@ -216,7 +216,7 @@ class StatusLine(LiveLine):
 
 
 def _shows_force(reading: DeviceReading | None) -> bool:
-    """Whether the device shows what it is asked for."""
+    """Tells whether the device shows what it is asked for."""
     return reading is not None and reading.gate == GateState.ACTIVE
 
 
@@ -281,8 +281,8 @@ def _explain_near_force(figures: dict[str, Any]) -> str:
     if distance_m is None or distance_m < 0.0 or figures["max_force_N"] == 0.0:
         return ""
     return (
-        f"; surfaces stayed {1e3 * distance_m:.3f} mm apart: force begins before they"
-        f" touch, at {key}; what is to fit needs one below its clearance"
+        f"; surfaces stayed {1e3 * distance_m:.3f} mm apart: force begins at {key};"
+        " for a tight fit set it below the clearance"
     )
 
 

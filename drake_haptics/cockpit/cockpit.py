@@ -1,4 +1,4 @@
-"""The page's side of the loop: greets it, shows each tick, hears what it asks for."""
+"""The loop's side of the page: sends it each tick, and reads its requests."""
 
 from __future__ import annotations
 
@@ -37,8 +37,7 @@ from drake_haptics.web.messages import ACTIVE, SIMULATED, WAITING
 
 _LONGEST_DESCRIPTION = 2000
 _CLUSTERING_HELP = (
-    "How few contacts are made of many: shared, which is continuous, or octree, the"
-    " paper's."
+    "Clustering of contacts: shared, which is continuous, or octree, the paper's."
 )
 # Pages learn of changes no more often: dragging a slider makes one per frame.
 _TELL_PERIOD_S = 0.1

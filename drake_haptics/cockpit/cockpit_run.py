@@ -277,7 +277,7 @@ class CockpitRun:
 
     @property
     def backend(self) -> DeviceBackend | None:
-        """What is held; None for the scene's simulated device."""
+        """The device that is held; None for the scene's simulated device."""
         return self._holding.backend
 
     def run(

@@ -155,7 +155,7 @@ class SoftStartDevice(DeviceBackend):
         self._before_B, self._share = self._shown_B, 0.0
 
     def resume(self) -> None:
-        """Takes it up again if it is at fault; else lets the force set in as it is."""
+        """Enables a device at fault again; otherwise lets the force set in as it is."""
         reading = self.read()
         if reading is not None and reading.gate == GateState.FAULT:
             self.recover()
@@ -163,7 +163,7 @@ class SoftStartDevice(DeviceBackend):
             self.waits = False
 
     def recover(self) -> None:
-        """Takes a device at fault up again, as one that is taken."""
+        """Enables a device at fault again."""
         self.waits = True
         self._gentle_ticks, self._share = 0, 0.0
         self._before_B = np.zeros(6)
@@ -195,7 +195,7 @@ class SoftStartDevice(DeviceBackend):
         return DeviceCommand(F_Ho_B, command.X_BH, command.V_BH, K_B, B_B)
 
     def _is_gentle(self, F_Ho_B: np.ndarray) -> bool:
-        """Whether a wrench [τ; f] may set in; one that is not finite may not."""
+        """Tells whether a wrench [τ; f] may set in; one that is not finite may not."""
         tau_x, tau_y, tau_z, f_x, f_y, f_z = np.asarray(F_Ho_B).tolist()
         torque_Nm, force_N = math.hypot(tau_x, tau_y, tau_z), math.hypot(f_x, f_y, f_z)
         return force_N <= self._gentle_force_N and torque_Nm <= self._gentle_torque_Nm
@@ -235,7 +235,7 @@ _OF_PAGE = {"mouse:": MOUSE, "meshcat:": SLIDERS}
 
 
 class Holding:
-    """The handle in somebody's hand: the scene's, the mouse's, a device's.
+    """The holder of the handle: the simulated hand, the mouse or a device.
 
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
@@ -273,12 +273,12 @@ class Holding:
 
     @property
     def names(self) -> dict[str, str]:
-        """Who can hold it, and what people read of them."""
+        """The possible holders, with their labels."""
         return self._names
 
     @property
     def pointer(self) -> PageHandle | None:
-        """What the pointer on the page moves, if it holds the handle."""
+        """The object that the pointer on the page moves, if it holds the handle."""
         return self.backend if isinstance(self.backend, PageHandle) else None
 
     @property
@@ -288,14 +288,14 @@ class Holding:
 
     @property
     def is_felt(self) -> bool:
-        """Whether a device is held that shows force."""
+        """Tells whether a device is held that shows force."""
         if self.taken is None:
             return False
         reading = self.taken.read()
         return reading is not None and reading.gate == GateState.ACTIVE
 
     def take(self, name: str, X_WH: RigidTransform | None = None) -> None:
-        """Gives the handle to somebody; whoever had it lets go at zero force.
+        """Gives the handle to a holder; the one before lets go at zero force.
 
         Args:
             name: One of `names`.
@@ -307,7 +307,7 @@ class Holding:
                 held as before then.
         """
         if name not in self.names:
-            raise DeviceError(f"There is nobody called {name!r} to hold the handle.")
+            raise DeviceError(f"There is no holder called {name!r}.")
         if name == SLIDERS and self.name == SLIDERS:
             # There can be one set of them.
             self.close()

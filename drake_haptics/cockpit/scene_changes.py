@@ -56,7 +56,7 @@ class ChangeError(HapticsError):
 
 
 class SceneChanges:
-    """What people have made of a scene, and how a scene file says so.
+    """The changes that people have made to a scene, as a scene file has them.
 
     Attributes:
         scene: The scene as it is now. It is replaced, never changed.
@@ -168,7 +168,7 @@ class SceneChanges:
         )
 
     def restore(self, scene: Scene) -> None:
-        """Makes the scene what it was before, or what its file says."""
+        """Restores the scene before the change, or that of its file."""
         self.scene = scene
         self._keys = {
             key: self._keys_of_file.get(key, item)
@@ -176,7 +176,7 @@ class SceneChanges:
         }
 
     def obey(self, request: dict[str, Any]) -> None:
-        """Does what a page asks for.
+        """Obeys a page's request.
 
         Args:
             request: A request that `read_page_request` returned, with one of
@@ -287,7 +287,7 @@ class CouplingAdvice:
 
     @property
     def has_hand(self) -> bool:
-        """Whether the scene's device can be simulated, in its hand."""
+        """Tells whether the scene's device can be simulated, in its hand."""
         return self._held is not None
 
     def check(self, scene: Scene, *, is_real: bool) -> list[BrokenBound]:

@@ -72,7 +72,7 @@ class PagePicture:
             self._meshcat.SetProperty(path, "modulated_opacity", opacity)
 
     def obey(self, request: dict[str, Any]) -> bool:
-        """Does what a page asks for, if that is a matter of the picture.
+        """Obeys a page's request, if it concerns the picture.
 
         Args:
             request: A request that `read_page_request` returned.
@@ -108,7 +108,7 @@ _AT_ONCE = -math.inf
 
 @dataclass(frozen=True)
 class Change:
-    """What a segment of a run ended for.
+    """The reason for which a segment of a run ended.
 
     Attributes:
         handle: Name of who holds the handle from now on.
@@ -120,7 +120,7 @@ class Change:
 
 
 class Steering:
-    """What becomes of a run on its page.
+    """Steers a run from its page.
 
     A run is a sequence of segments, each of one diagram. What can be written into a
     Context is, between two ticks; what cannot ends the segment. What cannot be at all
@@ -192,12 +192,12 @@ class Steering:
         return change
 
     def refuse(self, why: str) -> None:
-        """Takes back what could not be built."""
+        """Undoes changes that could not be built."""
         self.changes.restore(self._running)
         self._fail(why)
 
     def fall_back(self, why: str) -> bool:
-        """Takes all changes back, with which a run has failed.
+        """Undoes all changes, after a run has failed with them.
 
         Args:
             why: It has.
@@ -228,7 +228,7 @@ class Steering:
         X_WC: RigidTransform,
         now_s: float,
     ) -> bool:
-        """Does what pages have asked for.
+        """Obeys the requests of pages.
 
         Args:
             asked: The requests that `LivePage.act` returned.
@@ -283,7 +283,7 @@ class Steering:
             return True
         handle = request.get("to")
         if handle is not None and handle not in self._holding.names:
-            raise ChangeError(f"There is nobody called {handle!r} to hold the handle.")
+            raise ChangeError(f"There is no holder called {handle!r}.")
         # All others take the tool where it is; the simulated hand begins its path.
         self._end(_AT_ONCE, handle, verb == "restart" or handle == HAND)
         return True

@@ -70,7 +70,7 @@ class RealTimePacer:
 
     @property
     def last_late_s(self) -> float:
-        """How late the last tick was, s."""
+        """Lateness of the last tick, s."""
         return self._last_late_s
 
     def pause(self) -> None:

@@ -22,7 +22,7 @@ _Backend = TypeVar("_Backend", bound="DeviceBackend")
 
 
 class GateState(IntEnum):
-    """Whether a device shows force. The numbers are those on the wire."""
+    """States of a device's gate. The numbers are those on the wire."""
 
     IDLE = 0
     """No force; waits to be enabled."""
@@ -33,7 +33,7 @@ class GateState(IntEnum):
 
 
 class Fault(IntEnum):
-    """Why a device is in `GateState.FAULT`. The numbers are those on the wire."""
+    """Reasons for `GateState.FAULT`. The numbers are those on the wire."""
 
     NONE = 0
     STALE = 1
@@ -50,7 +50,7 @@ class Fault(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class DeviceReading:
-    """What a device last told of itself.
+    """The last state that a device sent.
 
     Attributes:
         sequence: Rises with every new sample; the same again means that nothing new
@@ -110,7 +110,7 @@ class DeviceCommand:
 
 @dataclass(frozen=True)
 class LinkStatus:
-    """How the way to a device does, counted since it was opened.
+    """State of the connection to a device, counted since it was opened.
 
     Attributes:
         received: Samples that came.
@@ -151,12 +151,12 @@ class DeviceBackend(ABC):
 
     @property
     def is_placed(self) -> bool:
-        """Whether it was told where its base stands in the world, and relies on it."""
+        """Tells whether it relies on a pose of its base in the world."""
         return False
 
     @property
     def shows_force(self) -> bool:
-        """Whether it can show any; a mouse cannot."""
+        """Tells whether it can show any; a mouse cannot."""
         return True
 
     @property
@@ -177,7 +177,7 @@ class DeviceBackend(ABC):
         """Ends at zero force and gives the device up; may be called again."""
 
     def recover(self) -> None:  # noqa: B027 - most devices have nothing to leave
-        """Takes a device at fault up again: disabled, then enabled by `write`."""
+        """Enables a device at fault again: disabled first, then enabled by `write`."""
 
     def start_contact_servo(self, tool: ServoTool) -> ContactServo:
         """Lets a thread solve contact between ticks and show it instead of `write`.
@@ -197,7 +197,7 @@ class DeviceBackend(ABC):
         """Ends what `start_contact_servo` has started: `write` is shown again."""
 
     def get_link_status(self) -> LinkStatus:
-        """Returns how the way to the device does."""
+        """Returns the state of the connection to the device."""
         return LinkStatus()
 
     def __enter__(self: _Backend) -> _Backend:

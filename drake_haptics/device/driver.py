@@ -193,7 +193,7 @@ class DeviceDriver:
             self._socket.close()
 
     def tick(self) -> None:
-        """Does what is to be done in one period."""
+        """Does the work of one period."""
         gate, reading = self._gate, self._reading
         now_ns = self._clock_ns()
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
@@ -219,7 +219,7 @@ class DeviceDriver:
     def _move_arm(
         self, F_Ho_B: np.ndarray, gate: GateState, fault: Fault
     ) -> DeviceReading:
-        """Returns what the device is after a period under a wrench."""
+        """Returns the device's reading after a period under a wrench."""
         X_BH, V_BH = self._arm.step(F_Ho_B)
         return DeviceReading(
             sequence=(self._statistics.ticks + 1) % _WRAP,

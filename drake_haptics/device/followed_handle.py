@@ -40,7 +40,7 @@ _MAX_TURN_RAD_PER_S = 6.0
 
 @dataclass(frozen=True)
 class Pursuit:
-    """One run to a goal, of any number of coordinates that belong together.
+    """One motion to a goal, of any number of coordinates that belong together.
 
     A runner leaves the origin at time 0 with a constant velocity u, reaches its goal
     at time T and stands there. The follower obeys

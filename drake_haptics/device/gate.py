@@ -38,12 +38,12 @@ class LocalGate:
 
     @property
     def state(self) -> GateState:
-        """Whether force is shown."""
+        """The state of the gate: whether force is shown."""
         return GateState(int(self._gate.state))
 
     @property
     def fault(self) -> Fault:
-        """Why not, where it is at fault."""
+        """The reason for a fault."""
         return Fault(int(self._gate.fault))
 
     def show(self, F_Ho_B: np.ndarray, now_ns: int) -> None:

@@ -139,8 +139,8 @@ class MeshcatDevice(DeviceBackend):
         taken &= {_HOME, *(name for name, _, _ in _SLIDERS)}
         if taken:
             raise DeviceError(
-                f"the Meshcat has controls of the names {', '.join(sorted(taken))}"
-                " already; close what they are for"
+                f"the Meshcat already has controls named {', '.join(sorted(taken))}:"
+                " delete them first"
             )
         self._handle = FollowedHandle(pose_to_vector(X_BH))
         self._X_WB = X_WB
@@ -210,7 +210,7 @@ class MeshcatDevice(DeviceBackend):
         self._show_wrench()
 
     def _poll(self, now_s: float) -> None:
-        """Takes what sliders, buttons and sticks ask for."""
+        """Reads sliders, buttons and sticks."""
         # After a stall a stick has not been pushed all the time.
         elapsed_s = min(now_s - self._polled_s, 2 * _POLL_PERIOD_S)
         self._polled_s = now_s

@@ -127,7 +127,7 @@ class TurnRate:
         self._rate = [0.0, 0.0, 0.0]
 
     def update(self, orientation: Sequence[float], time_s: float) -> list[float]:
-        """Takes the sensor's word and returns the rate.
+        """Takes the sensor's reading and returns the rate.
 
         Args:
             orientation: (4,) unit quaternion [qw qx qy qz] of the handle in B.

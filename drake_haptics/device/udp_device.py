@@ -129,7 +129,7 @@ class UdpDevice(DeviceBackend):
             self._contact.close()
 
     def recover(self) -> None:
-        """Takes a device at fault up again: disabled, then enabled by `write`."""
+        """Enables a device at fault again: disabled first, then enabled by `write`."""
         self._servo.recover()
 
     def close(self) -> None:
@@ -138,7 +138,7 @@ class UdpDevice(DeviceBackend):
         self._finalizer()
 
     def get_link_status(self) -> LinkStatus:
-        """Returns how the way to the device does."""
+        """Returns the state of the connection to the device."""
         status = self._servo.status()
         return LinkStatus(
             received=status.received,

@@ -79,12 +79,12 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
             rejected = backend.get_link_status().rejected
             was = "was" if rejected == 1 else "were"
             raise DeviceError(
-                f"the device has said nothing that can be used for {timeout_s:g} s:"
+                f"the device has sent nothing usable for {timeout_s:g} s:"
                 f" {count(rejected, 'packet')} came and {was} refused. Is each state"
                 " packed as docs/device-protocol.md says, all of it finite, the"
                 " quaternion of the pose of length 1?"
                 if rejected
-                else f"the device has said nothing for {timeout_s:g} s: is its driver"
+                else f"the device has sent nothing for {timeout_s:g} s: is its driver"
                 " running at the address given, and does it serve no other host?"
                 " `drake-haptics device` is a driver to try, at udp://127.0.0.1:7400"
             )

@@ -1,4 +1,4 @@
-"""Makes devices of arms: of a scene's simulated arm over UDP, of any arm over LCM."""
+"""Turns arms into devices: a scene's simulated arm over UDP, any arm over LCM."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ def AddLcmDriver(
     max_force_N: float,
     max_torque_Nm: float,
 ) -> HapticCommandReceiver:
-    """Adds what makes a device of an arm, behind the gate, for hosts on LCM.
+    """Adds the systems that turn an arm into a device on LCM, behind the gate.
 
     Run the diagram in real time: the time of its context is the gate's clock.
 

@@ -51,27 +51,27 @@ class BaseSystems:
 
     @property
     def contact_query(self) -> ContactQuery:
-        """Finds the contacts; a `SceneError` under `contact.law: constraint`."""
+        """The system that finds contacts, of `contact.law: penalty` alone."""
         return self.require_penalty().contact_query
 
     @property
     def contact_clustering(self) -> ContactClustering:
-        """Shares their stiffness; a `SceneError` under `contact.law: constraint`."""
+        """The system of clusters, of `contact.law: penalty` alone."""
         return self.require_penalty().contact_clustering
 
     @property
     def penalty_force(self) -> PenaltyForce:
-        """Answers them; a `SceneError` under `contact.law: constraint`."""
+        """The system of the force, of `contact.law: penalty` alone."""
         return self.require_penalty().penalty_force
 
     @property
     def pose_sampler(self) -> PoseSampler | None:
-        """Says where contacts are looked for, if not at every tick."""
+        """System that samples the pose for the query, if not at every tick."""
         return None if self.penalty is None else self.penalty.pose_sampler
 
     @property
     def contact_extrapolator(self) -> ContactExtrapolator | None:
-        """Carries contacts along then."""
+        """The system that carries contacts along between two queries."""
         return None if self.penalty is None else self.penalty.contact_extrapolator
 
     @property
@@ -83,14 +83,14 @@ class BaseSystems:
 
     @property
     def clusters(self) -> OutputPort:
-        """What pushes: clusters, or under `contact.law: constraint` contacts."""
+        """The clusters that push, or the contacts of the constraint law."""
         if self.penalty is None:
             return self.haptic_tool.GetOutputPort("contacts")
         return self.penalty.contact_clustering.GetOutputPort("clusters")
 
     @property
     def contact_wrench(self) -> OutputPort:
-        """What each of `clusters` pushes with."""
+        """The wrench of each of `clusters`."""
         return self._answer.GetOutputPort("contact_wrench")
 
     @property
@@ -184,7 +184,7 @@ class HapticLoop(BaseSystems):
 
     @property
     def outputs(self) -> dict[str, OutputPort]:
-        """What there is to see of the loop, by name.
+        """Output ports of the loop, by name.
 
         `BuildHapticDiagram` exports each by this name. In your own diagram each
         can be read, logged, connected or exported like any port.

@@ -1,4 +1,4 @@
-"""Connects to a haptic loop what shows it and what records it."""
+"""Connects a haptic loop to the systems that show and record it."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def make_log_header(scene: Scene) -> TickLogHeader:
 def AddTickLog(
     builder: DiagramBuilder, loop: HapticLoop, recorder: TickRecorder, period_s: float
 ) -> TickLogSink:
-    """Adds what notes every tick of a loop, and connects it.
+    """Adds the system that records every tick of a loop, and connects it.
 
     Args:
         builder: Builder of the diagram with the loop.

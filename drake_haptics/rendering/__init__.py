@@ -1,1 +1,1 @@
-"""Haptic rendering in a plant of your own."""
+"""Haptic rendering in your own plant."""

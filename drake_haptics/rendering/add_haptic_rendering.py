@@ -268,7 +268,7 @@ def _check_builder(
             "plant: has no scene graph; make it with AddMultibodyPlantSceneGraph"
         )
     if not scene_graph.model_inspector().SourceIsRegistered(source_id):
-        raise ValueError("scene_graph: is not that of the plant")
+        raise ValueError("scene_graph: is not the plant's")
     if builder.HasSubsystemNamed(name):
         raise ValueError(
             f"name: the builder has a system {name!r} already; give a second rendering"

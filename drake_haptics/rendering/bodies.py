@@ -49,7 +49,7 @@ class RenderedBody:
 
 
 def find_body(plant: MultibodyPlant, body: RigidBody | str, argument: str) -> RigidBody:
-    """Returns a body that is given by itself, its name, or `model::name`.
+    """Returns the body that is given as a `Body`, a name, or `model::name`.
 
     Args:
         plant: Has the body.

@@ -191,6 +191,6 @@ def _check_effects(
         )
     if effects.passivity is not None and device is None:
         raise ValueError(
-            "effects.passivity: is of a device; give device=, or put a PassivityControl"
+            "effects.passivity needs a device: give device=, or put a PassivityControl"
             " before your own"
         )

@@ -79,7 +79,7 @@ class RenderingWiring:
 
     @property
     def sources(self) -> dict[str, OutputPort]:
-        """What there is, by the names of the inputs that want it."""
+        """Output ports, by the names of the inputs that need them."""
         asked = {} if self._asked is None else {"F_Ho_W_desired": self._asked}
         return {
             **self.outputs,
@@ -95,7 +95,7 @@ class RenderingWiring:
         materials: Sequence[Material],
         period_s: float,
     ) -> None:
-        """Adds what finds contacts and answers them."""
+        """Adds the systems that find contacts and answer them."""
         if is_constraint(contact):
             self._add_proxy(contact, materials, period_s)
             return
@@ -255,7 +255,7 @@ class RenderingWiring:
             self.outputs |= _name_outputs(added.passivity)
 
     def add_applied_wrenches(self) -> None:
-        """Adds what makes forces on bodies of all wrenches, after all else."""
+        """Adds, last, the system that turns all wrenches into forces on bodies."""
         applied = self.builder.AddNamedSystem(
             "applied_wrenches",
             AppliedWrenches(

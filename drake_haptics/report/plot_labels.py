@@ -84,7 +84,7 @@ def label_points(axes: Axes, labels: Sequence[Label]) -> None:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a label may be, in pixels.
+    """A place where a label may be, in pixels.
 
     Attributes:
         offset: Of the middle of its words, from the point, in points.
@@ -97,11 +97,11 @@ class _Place:
     leader: Path
 
     def crosses(self, boxes: Sequence[Bbox]) -> bool:
-        """Whether the line to the point runs over one of the boxes."""
+        """Tells whether the line to the point runs over one of the boxes."""
         return any(self.leader.intersects_bbox(box, filled=False) for box in boxes)
 
     def is_crossed(self, lines: Sequence[Path]) -> bool:
-        """Whether one of the lines runs through the words."""
+        """Tells whether one of the lines runs through the words."""
         return any(line.intersects_bbox(self.box, filled=False) for line in lines)
 
 

@@ -1,1 +1,1 @@
-"""Scenes: what they may say, where they are found, and how they are read."""
+"""Scenes: their keys, where they are found, and how they are read and checked."""

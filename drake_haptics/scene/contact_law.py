@@ -1,4 +1,4 @@
-"""The two laws of contact: what each leaves out, and what is said of an overlap."""
+"""The two laws of contact: the keys that each ignores, and warnings of an overlap."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ def _make_identity() -> list[list[float]]:
 
 @dataclass
 class Motors:
-    """What is known of a device's motors, six of each, in the order of the joints.
+    """Properties of a device's motors, six of each, in the order of the joints.
 
     All angles and torques are after the gear. What is None is unknown.
 
@@ -52,7 +52,7 @@ class Motors:
 
 @dataclass
 class DevicePreset:
-    """What is known of a device.
+    """The properties of a device.
 
     Attributes:
         description: For people.
@@ -91,7 +91,7 @@ class DevicePreset:
 
     @property
     def has_model(self) -> bool:
-        """Whether it can be simulated."""
+        """Tells whether it can be simulated."""
         return bool(self.model)
 
     @property
@@ -117,7 +117,7 @@ def list_device_presets() -> dict[str, Path]:
 
 
 def is_preset_file(preset: str) -> bool:
-    """Whether a scene's `device.preset` is a file of the user's own, not a name."""
+    """Tells whether a scene's `device.preset` is a file, not a name."""
     return preset.endswith(_SUFFIXES)
 
 

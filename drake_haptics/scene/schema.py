@@ -13,7 +13,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 @dataclass(slots=True)
 class Material:
-    """What an object is made of; what is not given is the scene's.
+    """The material of an object; values that are not given are the scene's.
 
     Attributes:
         stiffness_N_per_m: Instead of `contact.stiffness_N_per_m`, N/m; of
@@ -155,7 +155,7 @@ class JointFrictionParameters:
 
 @dataclass(slots=True)
 class ForceDelayParameters:
-    """A way to the motors that takes whole ticks, on top of the hold.
+    """A delay of whole ticks on the way to the motors, on top of the hold.
 
     Attributes:
         samples: Ticks, at least 1.
@@ -178,7 +178,7 @@ class SaturationParameters:
 
 @dataclass(slots=True)
 class DeviceImperfections:
-    """How faithful the simulated device is. A part that is None is not in the diagram.
+    """Imperfections of the simulated device. A part that is None is not simulated.
 
     In a file, a part with the preset's figures is written `encoder: {}`.
 
@@ -282,7 +282,7 @@ class EnvironmentObject:
 
 @dataclass(slots=True)
 class ContactParameters:
-    """How contact is found and answered.
+    """Parameters of the contact query and of the contact force.
 
     There are two laws. `constraint` reads `skin_m` alone; all other keys are those of
     `penalty`. A scene can have both, and `law` chooses.
@@ -386,7 +386,7 @@ class DeviceParameters:
 
 @dataclass(slots=True)
 class Waypoint:
-    """Where the hand wants the tool to be at a time.
+    """A pose of the tool at a time, which the hand aims at.
 
     Attributes:
         time_s: Time from the start of the path, s.
@@ -401,7 +401,7 @@ class Waypoint:
 
 @dataclass(slots=True)
 class HandPathParameters:
-    """Where the hand wants the tool to go; its spring decides how firmly.
+    """The path that the hand aims at; its spring decides how firmly.
 
     Attributes:
         periodic: Whether the path starts again at its last waypoint, which must

@@ -96,11 +96,11 @@ def _split(key: str) -> list[str | int]:
     for part in key.split("."):
         match = _STEP.fullmatch(part)
         if match is None:
-            raise SceneError(f"{key}: is no key of a scene")
+            raise SceneError(f"{key}: is not a key of a scene")
         steps.append(match[1])
         steps += [int(i) for i in re.findall(r"\d+", match[2])]
     if steps[0] not in Scene.__dataclass_fields__:
-        raise SceneError(f"{key}: is no key of a scene; {_make_hint(key)}")
+        raise SceneError(f"{key}: is not a key of a scene; {_make_hint(key)}")
     return steps
 
 

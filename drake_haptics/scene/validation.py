@@ -42,7 +42,7 @@ _DEEP = 10.0
 
 
 class SceneWarning(UserWarning):
-    """A scene that can be used, but may not do what is wanted. Names the bound."""
+    """Warns of a scene that can be used but may not do what is wanted."""
 
 
 def check_values(scene: Scene) -> None:

@@ -18,7 +18,7 @@ SILENT_S = 1.0
 
 
 class SilenceMonitor:
-    """For how long a device's driver has said nothing new."""
+    """Time since a device's driver last said something new."""
 
     def __init__(self) -> None:
         self._sequence: int | None = None
@@ -43,7 +43,7 @@ class SilenceMonitor:
 
 
 class DeviceWatch:
-    """The book of a device's faults and of what it showed.
+    """Records a device's faults and its largest loads.
 
     A device at fault shows no force until somebody asks for it again: whoever holds
     it must not be surprised.

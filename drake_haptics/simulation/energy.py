@@ -134,7 +134,7 @@ def _reader(port: OutputPort, root: Context) -> Callable[[], Any]:
 
 
 class _Gains(NamedTuple):
-    """What can be changed in a context, and changes the energy of springs.
+    """The gains in a context whose change changes the energy of springs.
 
     Contact has none under `contact.law: constraint`.
     """

@@ -273,7 +273,7 @@ def _without_live_values(scene: Scene) -> Scene:
 
 
 class LiveValueRamp:
-    """Live values on their way.
+    """Interpolates live values, to be written at each tick.
 
     A gain that rises by a factor makes a force that is held rise by as much: written
     at once it kicks whoever holds the device. Here a force changes by no more than a
@@ -298,7 +298,7 @@ class LiveValueRamp:
         self.is_moving = False
 
     def aim(self, scene: Scene) -> None:
-        """Sets out for the values of a scene, from where the values are.
+        """Begins to interpolate to the values of a scene.
 
         What had no value yet has the scene's at once.
 
@@ -313,7 +313,7 @@ class LiveValueRamp:
         self.is_moving = self._now != self._goal
 
     def advance(self) -> None:
-        """Goes on by a tick."""
+        """Advances by a tick."""
         self._step += 1
         share = self._step / self._steps
         if share >= 1.0:

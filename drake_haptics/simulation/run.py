@@ -25,7 +25,7 @@ from drake_haptics.scene.validation import SceneWarning, question_depth
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.statistics import RunStatistics
 
-_MADE_BY = "BuildHapticDiagram(scene) makes it of a scene"
+_MADE_BY = "BuildHapticDiagram(scene) returns one"
 
 
 class RunError(RuntimeError):
@@ -118,7 +118,7 @@ def run(
     if energy and haptic.backend is not None:
         raise ValueError("energy can be booked for a simulated device only")
     if energy and statistics is not None and statistics.ticks:
-        raise ValueError("energy can be booked of a run that is all in one only")
+        raise ValueError("energy can be booked only from the first tick of a run")
     simulator = make_simulator(haptic, context)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     if statistics is None:

@@ -21,7 +21,7 @@ from drake_haptics.systems.arm.simulated_arm import (
 def transfer_context(
     old: HapticDiagram, old_context: Context, new: HapticDiagram
 ) -> Context:
-    """Returns a context of a diagram that goes on where another one is.
+    """Returns a context of a new diagram that continues from another's.
 
     Time goes on, and so does the state of every system that both have: the tool, what
     the device shows, the bristles of friction, the balance of passivity control. The

@@ -54,7 +54,7 @@ def _flatten(data: Any, where: str) -> Iterator[tuple[str, Any]]:
 
 @dataclass(frozen=True)
 class QuantityDiff:
-    """How a quantity differs between two runs.
+    """Differences of a quantity between two runs.
 
     Attributes:
         name: Name of the quantity and of its part.
@@ -77,7 +77,7 @@ class QuantityDiff:
 
 @dataclass(frozen=True)
 class LogDiff:
-    """How two runs differ.
+    """Differences between two runs.
 
     Attributes:
         ticks: Number of compared ticks: those that both logs have.
@@ -100,7 +100,7 @@ class LogDiff:
 
     @property
     def is_bit_equal(self) -> bool:
-        """Whether both have the same ticks and no bit of them differs."""
+        """Tells whether both have the same ticks and no bit of them differs."""
         return (
             self.only_a == 0
             and self.only_b == 0

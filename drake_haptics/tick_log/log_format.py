@@ -112,11 +112,11 @@ def _parse_header(facts: object) -> TickLogHeader:
     header = TickLogHeader(**{name: facts[name] for name in names})
     texts = [header.program_version, header.scene]
     if not isinstance(header.mesh_sha256, dict) or not isinstance(header.X_WB, list):
-        raise ValueError("mesh_sha256 is no object or X_WB no list")
+        raise ValueError("mesh_sha256 is not an object, or X_WB is not a list")
     texts += [*header.mesh_sha256, *header.mesh_sha256.values()]
     numbers = [header.period_s, *header.X_WB]
     if not all(isinstance(text, str) for text in texts):
-        raise ValueError("a version, a scene or a mesh is not told as text")
+        raise ValueError("a version, a scene or a mesh is not text")
     if not all(isinstance(x, float) and math.isfinite(x) for x in numbers):
         raise ValueError("a number is not a finite one with a decimal point")
     if len(header.X_WB) != 7 or header.period_s <= 0.0:

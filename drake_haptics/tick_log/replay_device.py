@@ -1,4 +1,4 @@
-"""A recorded handle as a device: what the hand did once, it does again."""
+"""A device that replays a recorded handle."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class ReplayDevice(DeviceBackend):
         )
 
     def write(self, command: DeviceCommand) -> None:
-        """Goes on by a tick; the first call only starts."""
+        """Advances by a tick; the first call only starts."""
         if self._gate == GateState.ACTIVE:
             self._tick = min(self._tick + 1, len(self._times_s) - 1)
         self._gate = GateState.ACTIVE

@@ -26,7 +26,7 @@ _SEARCHED_BYTES = 1 << 20
 
 @dataclass(frozen=True)
 class Damage:
-    """Bytes of a log that are no block, or not the one that follows.
+    """Bytes of a log that are not a block, or not the one that follows.
 
     Attributes:
         offset_bytes: Offset of the first of them in the file.
@@ -107,7 +107,7 @@ _REPORTED_SHARE = 0.01
 
 @dataclass(frozen=True)
 class Gap:
-    """Ticks that a log should have and has not.
+    """Ticks that are missing in a log.
 
     Attributes:
         first_tick: Number of the first missing tick.

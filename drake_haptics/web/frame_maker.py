@@ -33,7 +33,7 @@ def turn_into_view(v_W: Sequence[float], R_WC: Sequence[float]) -> list[float]:
 def measure_height(
     p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
 ) -> float | None:
-    """Returns what the picture is high at the depth of a point, m.
+    """Returns the height of the picture at the depth of a point, m.
 
     None for a point that is not before the camera, or nowhere.
 

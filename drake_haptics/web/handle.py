@@ -150,7 +150,7 @@ class PageHandle(DeviceBackend):
         return self._handle.gate
 
     def obey(self, asked: dict[str, Any], X_WC: RigidTransform) -> bool:
-        """Does what a page asks for, and counts it.
+        """Obeys a page's request, and counts it.
 
         Args:
             asked: A request as `read_page_request` returns it.

@@ -39,7 +39,7 @@ class PageCamera:
         self._set(X_WC)
 
     def look(self) -> None:
-        """Takes what the page has told since."""
+        """Reads what the page has sent since."""
         X_WC = self._meshcat.GetTrackedCameraPose()
         if X_WC is None or X_WC.IsExactlyEqualTo(self.X_WC):
             return
@@ -153,7 +153,7 @@ class LivePage:
     def act(
         self, now_s: float, describe: Callable[[], Outlook]
     ) -> list[dict[str, Any]]:
-        """Does one of the things that are due, and returns what pages ask for.
+        """Does one of the tasks that are due, and returns the requests of pages.
 
         Args:
             now_s: Time of any clock that runs, s.

@@ -37,7 +37,7 @@ NOT_KNOWN = math.nan
 
 @dataclass(frozen=True)
 class Tick:
-    """What was noted of a tick; NaN where that is not known.
+    """The record of a tick; NaN where a value is not known.
 
     Attributes:
         time_s: Simulated time, s.
@@ -93,7 +93,7 @@ class Telemetry:
 
 
 class TickBuffer:
-    """Takes the loop's ticks until they are sent.
+    """Buffers the loop's ticks until they are sent.
 
     Where nobody takes them for long, the latest are left out.
     """
@@ -198,7 +198,7 @@ REFUSED = "refused"
 
 
 def _is_number(value: object) -> bool:
-    """Whether it is a number, not a truth value, and finite."""
+    """Tells whether it is a number, not a truth value, and finite."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     # False for what is not a number, too.

@@ -21,7 +21,7 @@ from drake_haptics.web.server import PageServer
 
 
 def write_changes(changes: dict[str, Any], indent: str = "") -> str:
-    """Returns YAML to put into the scene's file in the place of the same keys.
+    """Returns YAML that replaces the same keys in the scene's file.
 
     Args:
         changes: Sections of a scene with keys and values, as `SceneChanges` has them.
@@ -91,7 +91,7 @@ class PageProcess:
         )
 
     def _read(self) -> None:
-        """Takes what the loop has sent."""
+        """Reads what the loop has sent."""
         with suppress(BlockingIOError):
             while packet := self._link.recv(LARGEST_DATAGRAM):
                 if packet.startswith(KIND):

@@ -76,7 +76,7 @@ class HandPath:
 
     @property
     def core(self) -> PosePath:
-        """What the core evaluates."""
+        """The law that the core evaluates."""
         return self._core
 
     def calc(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Decides what each contact pushes with, given the others."""
+"""Decides with what stiffness each contact pushes, given the others."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ClusteringMethod = Literal["shared", "octree"]
 
 @dataclass(frozen=True)
 class ClusteringRule:
-    """Which contacts push, and which count as one; immutable.
+    """The rule of which contacts push, and which count as one; immutable.
 
     Attributes:
         method: "shared" or "octree".

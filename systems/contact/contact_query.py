@@ -42,7 +42,7 @@ _NOTHING = "nothing"
 
 @dataclass(frozen=True)
 class ContactObject:
-    """Something the tool can meet.
+    """An object that the tool can touch.
 
     Attributes:
         name: Unique among the objects; part of port names.
@@ -136,7 +136,7 @@ class ContactQuery(DifferentiableSystem):
         if max_walk_steps < 1:
             raise ValueError(f"max_walk_steps must be at least 1, is {max_walk_steps}")
         if not objects:
-            raise ValueError("objects must name something that the tool can meet")
+            raise ValueError("objects must not be empty")
         if len({item.name for item in objects}) < len(objects):
             raise ValueError("two objects have the same name")
         self._tool = tool
@@ -340,7 +340,7 @@ def _check_tolerance(tolerance_m: float) -> None:
 
 
 class ObjectMotions:
-    """Where all objects are and how they move; those that move are read from ports.
+    """Poses and velocities of all objects; those that move are read from ports.
 
     Gives its system the input ports `X_WO_<name>` (7) and `V_WO_<name>` (6) for each
     object without a pose of its own. The others are placed here, once.

@@ -17,7 +17,7 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 
 class FrictionReaction(DifferentiableSystem):
-    """What `StickSlipFriction` does to objects that can move.
+    """The reaction of `StickSlipFriction` on objects that can move.
 
     At each cluster the object gets the opposite of the force on the tool, at the same
     point, so that tool and objects keep their momentum.

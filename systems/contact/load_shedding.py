@@ -46,7 +46,7 @@ class TickMeter:
 
     @property
     def busy_s(self) -> float:
-        """What the last whole tick took, s; 0 before there is one."""
+        """Time of the last whole tick, s; 0 before there is one."""
         return self._busy_s
 
     def begin(self) -> None:

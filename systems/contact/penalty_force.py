@@ -33,7 +33,7 @@ _GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
 
 @dataclass(frozen=True, eq=False)
 class ContactGains:
-    """How each object answers contact; immutable.
+    """Stiffness, damping and friction of each object's contact; immutable.
 
     Attributes:
         stiffness_N_per_m: k of each object, (n,), N/m.

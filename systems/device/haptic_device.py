@@ -112,5 +112,5 @@ class HapticDevice(Diagram):
 
     @property
     def wants_slopes(self) -> bool:
-        """Whether there is a backend that can use `handle_slopes`."""
+        """Tells whether there is a backend that can use `handle_slopes`."""
         return self._wants_slopes

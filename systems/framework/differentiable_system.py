@@ -36,7 +36,7 @@ get_no_witness_functions = make_witness_override()
 
 
 class AutoDiffPoint:
-    """Where a system is to be differentiated: its inputs, state and time.
+    """The point at which a system is differentiated: its inputs, state and time.
 
     All vectors have derivatives by the same D variables; what does not depend on
     them has zeros.
@@ -89,7 +89,7 @@ class AutoDiffPoint:
         self.time_s: AutoDiffVector = self._inputs.pop("\0time")
 
     def __contains__(self, port: str) -> bool:
-        """Whether an input is connected or fixed."""
+        """Tells whether an input is connected or fixed."""
         return port in self._inputs
 
     def __getitem__(self, port: str) -> Any:

@@ -1,1 +1,1 @@
-"""Devices over LCM: messages to vectors and back."""
+"""Systems that turn LCM messages into vectors, and back."""

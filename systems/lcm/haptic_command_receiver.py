@@ -1,4 +1,4 @@
-"""The gate of a haptic device that is asked over LCM."""
+"""The gate of a haptic device that is commanded over LCM."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Makes LCM commands to a haptic device of vectors."""
+"""Turns vectors into LCM commands to a haptic device."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Makes vectors of the LCM statuses of a haptic device."""
+"""Turns the LCM statuses of a haptic device into vectors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Makes LCM statuses of a haptic device of vectors."""
+"""Turns vectors into LCM statuses of a haptic device."""
 
 from __future__ import annotations
 

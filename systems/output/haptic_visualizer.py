@@ -171,7 +171,7 @@ class HapticVisualizer(DifferentiableSystem):
 
     @property
     def recorded_sizes(self) -> np.ndarray:
-        """What was felt while it recorded: (n, 3) time, s, force, N, torque, N·m.
+        """Times, forces and torques while it recorded: (n, 3), s, N, N·m.
 
         Of two ticks one is there; frames, of which there are fewer, lose peaks.
         """
@@ -215,14 +215,14 @@ class HapticVisualizer(DifferentiableSystem):
             self._go_on(_SLICE_S)
 
     def _must_save(self, context: Context) -> bool:
-        """Whether the loop has no time for drawing."""
+        """Tells whether the loop has no time for drawing."""
         return (
             self._load_shedding is not None
             and self._load_shedding.Eval(context)[0] > 0.0
         )
 
     def _is_due(self, time_s: float) -> bool:
-        """Whether a frame belongs to this slice."""
+        """Tells whether a frame belongs to this slice."""
         return round(time_s / self._slice_period_s) % self._slices == 0
 
     def _record(self, context: Context) -> None:

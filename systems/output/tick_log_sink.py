@@ -1,4 +1,4 @@
-"""Notes every tick of a haptic loop in a log."""
+"""Records every tick of a haptic loop in a log."""
 
 from __future__ import annotations
 

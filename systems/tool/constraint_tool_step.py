@@ -47,7 +47,7 @@ _NOTHING = "nothing"
 
 @dataclass(frozen=True, eq=False)
 class ConstraintWrench:
-    """What the contacts of a step push with. Immutable.
+    """The wrenches of the contacts of a step. Immutable.
 
     Attributes:
         contacts: (n,) those that push.
@@ -189,7 +189,7 @@ class ConstraintToolStep(Diagram):
         if not period_s > 0.0:
             raise ValueError(f"period_s must be positive, is {period_s}")
         if not objects:
-            raise ValueError("objects must name something that the tool can meet")
+            raise ValueError("objects must not be empty")
         if len({item.name for item in objects}) < len(objects):
             raise ValueError("two objects have the same name")
         self._dynamics = dynamics

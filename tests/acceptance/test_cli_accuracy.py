@@ -199,7 +199,7 @@ def test_an_impossible_budget_is_told_with_status_3(invoke, sample, fresh_runs):
         (["--only", "contact.depth"], "'contact.depth' is not KEY=VALUE"),
         (
             ["--only", "contact.deep=1"],
-            "is no key of a scene; did you mean 'contact.depth'",
+            "is not a key of a scene; did you mean 'contact.depth'",
         ),
         (["--only", "contact.tolerance_m=-1"], "contact.tolerance_m must not be neg"),
     ],

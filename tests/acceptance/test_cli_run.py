@@ -274,7 +274,7 @@ def test_pieces_are_colored_in_a_recording(tmp_path):
         (
             ["run", "cup_spoon", "--headless", "--json", "no.one", "--log", "no.one"],
             1,
-            ["a file of its own"],
+            ["its own file"],
         ),
     ],
 )  # fmt: skip
@@ -312,7 +312,7 @@ def test_a_device_that_does_not_answer_is_told_with_its_address():
     address = "udp://127.0.0.1:9"
     result = invoke("run", "sphere_pen", "--headless", "--device", address)
     assert result.exit_code == 1
-    assert f"Error: {address}: the device has said nothing" in result.output
+    assert f"Error: {address}: the device has sent nothing" in result.output
 
 
 def test_a_port_in_use_is_named():

@@ -122,7 +122,7 @@ def test_accuracy_is_that_of_the_changed_scene_and_its_page_says_so(
             "give --tool-scale instead",
         ),
         (["copy.yaml", "--write-scene", "copy.yaml"], "is the scene that runs"),
-        (["sphere_pen", "--write-scene", "a", "--log", "a"], "a file of its own"),
+        (["sphere_pen", "--write-scene", "a", "--log", "a"], "its own file"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_set_is_told_with_what_to_do(invoke, arguments, words):

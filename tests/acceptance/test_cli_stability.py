@@ -111,7 +111,7 @@ def test_a_mistake_is_one_line(invoke, arguments, words, tmp_path):
     ("arguments", "words"),
     [
         (["--map", "1"], "Invalid value for --map: 0 for no map, else at least 2"),
-        (["--at", "nan"], "Invalid value for '--at': nan is no finite number"),
+        (["--at", "nan"], "Invalid value for '--at': nan is not a finite number"),
     ],
 )
 def test_a_value_that_cannot_be_is_a_wrong_call(invoke, arguments, words):

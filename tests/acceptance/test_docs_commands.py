@@ -13,7 +13,7 @@ from markdown_page import PROGRAM
 from drake_haptics.cli import main
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"])
+PAGES = sorted([*(ROOT / "docs").rglob("*.md"), ROOT / "README.md"])
 _PROGRAM = re.compile(
     r"(?:^|[\s`(])python3? ((?:tests|docs|examples)/\S+\.py)([^`\n]*)"
 )

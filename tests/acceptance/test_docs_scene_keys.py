@@ -16,7 +16,7 @@ from drake_haptics.scene.validation import SceneError
 from drake_haptics.scene.yaml_loading import check_keys
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"])
+PAGES = sorted([*(ROOT / "docs").rglob("*.md"), ROOT / "README.md"])
 PARTS = "|".join(typing.get_type_hints(Scene))
 _KEY = re.compile(rf"(?:{PARTS})(?:\.[a-z][\w]*)+$")
 # The variable `contact` of snippets is another one.

@@ -1,4 +1,4 @@
-"""What docs/haply.md shows runs against a service, and its figures are the code's."""
+"""What docs/reference/haply.md shows runs, and its figures are those of the code."""
 
 import inspect
 import re
@@ -8,7 +8,9 @@ from haply_service import HaplyService, Inverse3
 
 from drake_haptics.device.haply.haply_device import HaplyDevice
 
-TEXT = (Path(__file__).parents[2] / "docs" / "haply.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[2] / "docs" / "reference" / "haply.md").read_text(
+    encoding="utf-8"
+)
 (SNIPPET,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""docs/lcm.md as two real processes over UDP multicast, and what can go wrong there."""
+"""docs/reference/lcm.md as two processes over UDP multicast, and what can go wrong."""
 
 import os
 import re
@@ -16,7 +16,9 @@ from waiting import wait_until
 from drake_haptics.device.backend import DeviceCommand, Fault, GateState
 from drake_haptics.device.lcm.lcm_device import LcmDevice
 
-TEXT = (Path(__file__).parents[2] / "docs" / "lcm.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[2] / "docs" / "reference" / "lcm.md").read_text(
+    encoding="utf-8"
+)
 DEVICE, HOST = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 

@@ -227,7 +227,7 @@ def test_the_picture_has_region_lines_and_gains():
         "eigenvalue: one reaches 1",
         "formula: (b + B)/(T/2 + t_d)",
         "passivity: (b - |B|)/(T/2 + t_d)",
-        "passivity: of what the loop feels like",
+        "passivity: of the felt impedance",
         "the scene's gains",
     }
     assert axes.get_xlim() == (100.0, 5000.0)

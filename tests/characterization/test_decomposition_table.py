@@ -72,7 +72,7 @@ def test_merged_and_reduced_meshes_are_as_near_as_was_asked_for(name):
 
 def test_an_organ_is_cut_exactly_and_in_little_memory():
     """In a process of its own, whose memory is its own."""
-    script = PAGE.parent / "generate" / "decomposition_table.py"
+    script = PAGE.parents[1] / "generate" / "decomposition_table.py"
     command = [sys.executable, script, "--measure", "organ", "--points", "150"]
     answer = subprocess.run(command, check=True, capture_output=True, text=True)
     result = json.loads(answer.stdout)

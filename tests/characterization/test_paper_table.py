@@ -83,11 +83,11 @@ def test_every_statement_has_a_verdict_and_is_counted():
 
 
 def test_pictures_are_there_and_small():
-    shown = re.findall(r"!\[.+\]\((paper_\w+\.png)\)", FIGURES)
-    there = sorted(path.name for path in PAGE.parent.glob("paper_*.png"))
+    shown = re.findall(r"!\[.+\]\(\.\./(paper_\w+\.png)\)", FIGURES)
+    there = sorted(path.name for path in PAGE.parents[1].glob("paper_*.png"))
     assert sorted(shown) == there
     for name in shown:
-        assert (PAGE.parent / name).stat().st_size < 120_000
+        assert (PAGE.parents[1] / name).stat().st_size < 120_000
     expected = [
         file_of(p) for s in make_sections(make_evaluation()) for p in s.pictures
     ]

@@ -68,7 +68,7 @@ def test_pages_tell_what_gets_through_with_the_gains_of_the_shipped_scenes() -> 
     for rows in (soft, thin):
         met, through = (sum(int(r[key]) for r in rows) for key in ("met", "through"))
         assert f"{through} of {met:,} presses and jabs (" in page
-    # What docs/numerics.md calls one in ten.
+    # What docs/verification/numerics.md calls one in ten.
     assert 0.08 < through / met < 0.125
 
 

@@ -18,7 +18,7 @@ def test_a_fault_says_why_and_what_to_do():
         make_reading(), gate=GateState.FAULT, fault=Fault.NOT_FINITE
     )
     words = describe_gate(reading)
-    assert "FAULT (not finite): Enter takes it up again" in words
+    assert "FAULT (not finite): Enter enables it again" in words
 
 
 def test_an_active_device_has_nothing_to_say():

@@ -240,7 +240,7 @@ def test_a_scene_without_a_simulated_device_has_no_simulated_hand(
     )  # fmt: skip
     assert rig.run(0.2)["ticks"] == 200
     assert "hand" not in {item["name"] for item in rig.page.hellos[0]["handles"]}
-    assert "nobody called 'hand'" in rig.page.states[-1]["error"]
+    assert "no holder called 'hand'" in rig.page.states[-1]["error"]
 
 
 def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, device):

@@ -1,4 +1,4 @@
-"""docs/accuracy.md has all scenes, knobs, settings and columns of today."""
+"""docs/verification/accuracy.md has all scenes, knobs, settings and columns."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import shlex
 import pytest
 from accuracy_samples import make_study
 from accuracy_table import (
+    ADVICE_NAME,
+    ADVICE_PAGE,
     BUDGET_HEADINGS,
     BUDGET_SCENES,
     BUDGETS_NAME,
@@ -32,6 +34,7 @@ from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
 TEXT = PAGE.read_text(encoding="utf-8")
+ADVICE = ADVICE_PAGE.read_text(encoding="utf-8")
 
 
 def rows_of(page: str, name: str) -> list[list[str]]:
@@ -90,6 +93,13 @@ def test_every_scene_has_its_sentences(name: str) -> None:
     assert "read ratios" in part
 
 
+@pytest.mark.parametrize("name", SCENES)
+def test_the_advice_is_that_of_the_price_list(name: str) -> None:
+    lines = read_part(ADVICE, ADVICE_NAME).splitlines()
+    [advice] = [x for x in lines if x.startswith(f"- **{name}**: ")]
+    assert read_part(TEXT, name).strip().startswith(advice.partition(": ")[2])
+
+
 def test_every_scene_has_a_budget() -> None:
     head, *rows = rows_of(TEXT, BUDGETS_NAME)
     assert head == list(BUDGET_HEADINGS)
@@ -101,11 +111,13 @@ def test_the_columns_are_those_of_today() -> None:
 
 
 def test_the_picture_is_there() -> None:
-    assert PICTURE.name in TEXT and PICTURE.is_file()
+    assert PICTURE.name in ADVICE and PICTURE.is_file()
 
 
 def test_commands_that_are_shown_have_options_that_exist() -> None:
-    asked = re.findall(r"^drake-haptics (accuracy .*?)(?: +#.*)?$", TEXT, re.MULTILINE)
+    asked = re.findall(
+        r"^drake-haptics (accuracy .*?)(?: +#.*)?$", ADVICE, re.MULTILINE
+    )
     assert len(asked) == 4
     known = CliRunner().invoke(main, ["accuracy", "--help"]).stdout
     for line in asked:

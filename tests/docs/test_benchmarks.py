@@ -1,4 +1,4 @@
-"""docs/benchmarks.md has the tables that the benchmark makes now."""
+"""docs/verification/benchmarks.md has the tables that the benchmark makes now."""
 
 from __future__ import annotations
 

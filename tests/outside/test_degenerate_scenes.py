@@ -56,7 +56,7 @@ class Law:
         contact: Its parameters.
         calc_least_distance: Returns how near tool and solid may come in a scene, m.
         made_J: Energy that it is known to make, by the name of the scene, J: of
-            `penalty` flush faces store less than they give (docs/numerics.md), of
+            `penalty` flush faces store less than they give, of
             `constraint` the force of a tick is that of its beginning where a spike
             slips off. What was measured, and a tenth.
         bump: Largest force against a slide from one object to the next, whose faces

@@ -345,7 +345,7 @@ def test_a_plant_that_cannot_be_used_is_refused():
     scene.finalize()
     with pytest.raises(ValueError, match="plant: is not in the builder"):
         AddHapticRendering(DiagramBuilder(), scene.plant, scene.scene_graph, "tool")
-    with pytest.raises(ValueError, match="scene_graph: is not that of the plant"):
+    with pytest.raises(ValueError, match="scene_graph: is not the plant's"):
         AddHapticRendering(scene.builder, scene.plant, SceneGraph(), "tool")
     scene.start()
     with pytest.raises(ValueError, match="builder: is built already"):

@@ -336,14 +336,14 @@ def test_what_would_mean_nothing_is_refused():
         ),
         (
             {"effects": Effects(passivity=PassivityParameters())},
-            "passivity: is of a device",
+            "passivity needs a device",
         ),
         (
             {
                 "effects": Effects(passivity=PassivityParameters()),
                 "coupling": CouplingParameters(),
             },
-            "passivity: is of a device",
+            "passivity needs a device",
         ),
     ]:
         with pytest.raises(ValueError, match=message):

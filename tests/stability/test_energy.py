@@ -103,7 +103,7 @@ def test_what_a_shipped_scene_creates_is_the_contact_s(scene):
     """A known gap: depth and center of a flush contact are of different points.
 
     Its wrench is then not quite the gradient of what it stores. All else balances. What
-    is made was measured, and may be a tenth more; docs/numerics.md tells of it.
+    is made was measured, and may be a tenth more; see the page on numerics.
     """
     books = energies(load_scene(find_scene(scene)), 5.0)
     contact = books.pop("contact")
@@ -115,7 +115,9 @@ def test_what_a_shipped_scene_creates_is_the_contact_s(scene):
 
 
 def test_the_page_tells_what_shipped_scenes_create():
-    page = (Path(__file__).parents[2] / "docs" / "numerics.md").read_text("utf-8")
+    page = (
+        Path(__file__).parents[2] / "docs" / "verification" / "numerics.md"
+    ).read_text("utf-8")
     text = " ".join(page.split())
     for scene in ("cup_spoon", "torus_peg", "rubbed_sphere"):
         assert f"{100 * MADE[scene][0]:.0f} % (`{scene}`)" in text

@@ -69,8 +69,8 @@ def _encode(value: Any, where: str) -> Any:
     if isinstance(value, np.generic) and not isinstance(value.item(), np.generic):
         return _encode(value.item(), where)
     raise ValueError(
-        f"{where or 'it'} is of type {kind.__module__}.{kind.__qualname__}, which no"
-        " exact JSON is known for: use None, bool, int, float, complex, str, arrays"
+        f"{where or 'it'} is of type {kind.__module__}.{kind.__qualname__}, which"
+        " exact JSON cannot hold: use None, bool, int, float, complex, str, arrays"
         " of NumPy without objects, and lists, tuples and dicts of these"
     )
 

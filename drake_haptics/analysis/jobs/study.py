@@ -213,7 +213,7 @@ def run_study(
 
 
 class _Study:
-    """What is done of a study. Tasks are known by their exact JSON.
+    """The tasks of a study that are done. Tasks are known by their exact JSON.
 
     Args:
         function: Function of one task.

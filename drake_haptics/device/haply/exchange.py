@@ -1,6 +1,7 @@
 """The dialogue with Haply's Inverse Service: its JSON messages and our answers.
 
-Time is an argument, and nothing here opens a connection. Sources: docs/haply.md.
+Time is an argument, and nothing here opens a connection. docs/reference/haply.md
+names the sources.
 """
 
 from __future__ import annotations
@@ -81,7 +82,7 @@ def parse_state(
     try:
         message = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise HaplyMessageError(f"this is no JSON: {error}") from error
+        raise HaplyMessageError(f"this is not JSON: {error}") from error
     inverse3 = _find_device(message, "inverse3", device_id)
     if inverse3 is None:
         return None
@@ -130,13 +131,13 @@ def _find_device(
 ) -> dict[str, Any] | None:
     """Returns a device of a kind out of a message, None if it is not listed."""
     if not isinstance(message, dict):
-        raise HaplyMessageError("the message is no object")
+        raise HaplyMessageError("the message is not an object")
     devices = message.get(kind, [])
     if not isinstance(devices, list):
         raise HaplyMessageError(f"{kind} is no list")
     for device in devices:
         if not isinstance(device, dict):
-            raise HaplyMessageError(f"{kind} lists what is no object")
+            raise HaplyMessageError(f"{kind} lists something that is not an object")
         if device_id is None or device.get("device_id") == device_id:
             return device
     return None
@@ -216,15 +217,15 @@ class HaplyExchange:
         self.reading: DeviceReading | None = None
         """The newest one."""
         self.has_grip = False
-        """Whether a grip told its orientation in the newest message."""
+        """Tells whether a grip told its orientation in the newest message."""
         self.rejected = 0
         """Messages that could not be used."""
-        self.complaint = "it has said nothing"
+        self.complaint = "it has sent nothing"
         """The complaint about the last message of the service."""
 
     @property
     def is_released(self) -> bool:
-        """Whether no force is shown or asked for."""
+        """Tells whether no force is shown or asked for."""
         return self._gate.state is not GateState.ACTIVE
 
     def release(self) -> None:

@@ -149,7 +149,7 @@ class HaplyDevice(DeviceBackend):
 
     @property
     def has_grip(self) -> bool:
-        """Whether a VerseGrip tells the orientation."""
+        """Tells whether a VerseGrip tells the orientation."""
         return self._exchange.has_grip
 
     def read(self) -> DeviceReading | None:

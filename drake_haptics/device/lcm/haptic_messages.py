@@ -151,7 +151,7 @@ def _hash_text(value: int, text: str) -> int:
 @lay_out
 @dataclass(frozen=True)
 class lcmt_haptic_status(FixedMessage):
-    """What a haptic device tells, once per tick; all in the frame B of its base.
+    """The status of a haptic device, sent each tick, in the frame B of its base.
 
     Attributes:
         utime: The device's monotonic clock, µs.
@@ -189,7 +189,7 @@ class lcmt_haptic_status(FixedMessage):
 @lay_out
 @dataclass(frozen=True)
 class lcmt_haptic_command(FixedMessage):
-    """What a haptic device is asked for.
+    """The command to a haptic device.
 
     Attributes:
         utime: The host's monotonic clock, µs.

@@ -72,11 +72,11 @@ class HostHandshake:
 
     @property
     def is_at_fault(self) -> bool:
-        """Whether the device is left alone."""
+        """Tells whether the device is left alone."""
         return self._phase is _Phase.AT_FAULT
 
     def fall_silent(self) -> None:
-        """Leaves a device alone that says nothing any more.
+        """Stops commanding a device that no longer sends.
 
         What it would be asked for is computed from where its handle was.
         """
@@ -89,7 +89,7 @@ class HostHandshake:
             self._start_over()
 
     def hear(self, status: lcmt_haptic_status, now_s: float) -> None:
-        """Takes in what the device tells.
+        """Reads the device's status.
 
         Args:
             status: Newer than the last one.
@@ -204,7 +204,7 @@ class LcmDevice(DeviceBackend):
         """
         if not re.fullmatch(_URL, url):
             raise DeviceError(
-                f"'{url}' is no LCM URL: give one such as"
+                f"'{url}' is not an LCM URL: give one such as"
                 " udpm://239.255.76.67:7667?ttl=0, with a multicast address"
             )
         try:

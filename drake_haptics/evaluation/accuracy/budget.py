@@ -56,7 +56,7 @@ class Trial:
         return statistics.median(self.scene_p99_us or (math.nan,))
 
     def holds(self, budget_us: float) -> bool:
-        """Whether it keeps a budget, and will in later runs but for 10 %.
+        """Tells whether it keeps a budget, and will in later runs but for 10 %.
 
         The median of the runs must keep it, and four fifths of them must within 10 %.
         """
@@ -66,7 +66,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class BudgetChoice:
-    """What came of a budget.
+    """The outcome of a budget.
 
     Attributes:
         budget_us: For the whole tick at its 99th percentile, µs.
@@ -87,7 +87,7 @@ class BudgetChoice:
 
     @property
     def is_scene(self) -> bool:
-        """Whether the scene is left as it is."""
+        """Tells whether the scene is left as it is."""
         return not self.trial.combination.rows
 
 
@@ -136,7 +136,7 @@ def choose_setting(
     done = {0: as_it_is}
 
     def hold(index: int) -> bool:
-        """Whether a combination holds, by runs of it."""
+        """Tells whether a combination holds, by runs of it."""
         if index not in done:
             what = f"combination {index} of {len(chain) - 1}"
             done[index] = _try_out(
@@ -249,7 +249,7 @@ def describe_file(choice: BudgetChoice, scene: Scene, name: str) -> list[str]:
 
 
 def describe_help(choice: BudgetChoice) -> list[str]:
-    """Says what else would help where no setting does."""
+    """Says what would help where no setting does."""
     return [
         "Most of such a tick is Drake and Python round the core: `drake-haptics run"
         " SCENE --explain` shows the parts. The simulated arm alone is about half; a"

@@ -25,7 +25,7 @@ _TOLERANCE = 1e-2
 
 @dataclass(frozen=True)
 class PressedPlace:
-    """Where a scene's hand stops, or why there is no such place.
+    """The place where a scene's hand stops, or the reason why there is none.
 
     Attributes:
         time_s: When it stops on its path, s; None where the tool rests nowhere.

@@ -121,7 +121,7 @@ def _turn(chosen: tuple[Row, ...], row: Row) -> tuple[Row, ...]:
 
 
 def _fits(rows: tuple[Row, ...], scene: Scene) -> bool:
-    """Whether no row undoes another's change, and together they make a scene."""
+    """Tells whether no row undoes another's change, and together they make a scene."""
     changes = merge_changes(rows)
     if any(changes[k] != v for row in rows for k, v in row.setting.changes.items()):
         return False

@@ -21,7 +21,7 @@ NOT_SOUGHT = "not sought"
 
 @dataclass(frozen=True)
 class Cost:
-    """What a setting costs.
+    """The time that a setting costs.
 
     Attributes:
         tick: Whole ticks of the loop, paced by the clock.
@@ -36,7 +36,7 @@ class Cost:
 
 @dataclass(frozen=True)
 class Errors:
-    """How far a setting is from the truth, over a recorded motion of the tool.
+    """Errors of a setting against the truth, over a recorded motion of the tool.
 
     Attributes:
         force_rms_N: Root mean square of the force's difference from the reference

@@ -221,7 +221,7 @@ def _count_triangles(
 
 
 def _is_round(part: Tool | EnvironmentObject) -> bool:
-    """Whether a part has shapes that a finer polytope follows better."""
+    """Tells whether a part has shapes that a finer polytope follows better."""
     fine, coarse = (_count_triangles(part, _CHORDS_M[i]) for i in (0, -1))
     return fine > coarse
 

@@ -28,7 +28,7 @@ _FAR_M = 1e3
 
 @dataclass(frozen=True, eq=False)
 class NativePart:
-    """What the core is asked in each tick, without Drake. Pickles.
+    """The queries to the core in each tick, without Drake. Can be pickled.
 
     Attributes:
         tool: Pieces of the tool.

@@ -109,12 +109,14 @@ def _label_knob(knob: _Knob, axes: Axes, get_time_us: Callable[[Row], float]) ->
     pixels = axes.transData.transform(points)
     own = [pixels[i] for i, row in enumerate(knob.rows) if row.is_scene]
     far = [min((math.dist(x, scene) for scene in own), default=0.0) for x in pixels]
-    return Label(*points[far.index(max(far))], knob.name, knob.color)
+    farthest = far.index(max(far))
+    words = f"{knob.name}\n{knob.rows[farthest].setting.label}"
+    return Label(*points[farthest], words, knob.color)
 
 
 @dataclass(frozen=True)
 class _Knob:
-    """What of a knob is drawn.
+    """The parts of a knob that are drawn.
 
     Attributes:
         name: Of the knob.

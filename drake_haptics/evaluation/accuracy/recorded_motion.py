@@ -25,7 +25,7 @@ _SAME_TICK = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class RecordedMotion:
-    """How handle H and tool moved in the world W, tick by tick.
+    """Motion of handle H and tool in the world W, tick by tick.
 
     Poses are [qw qx qy qz x y z], m; velocities are [ω; v] of the frame's origin in the
     world, rad/s and m/s. Row k is what the updates of tick k + 1 of the run saw.
@@ -126,7 +126,7 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
 
 @dataclass(frozen=True, eq=False)
 class ToolReplay:
-    """What the contacts of a scene answer to a recorded motion, at its n ticks.
+    """The wrenches of a scene's contacts along a recorded motion, at its n ticks.
 
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] at the tool's origin in the world, N·m and N: of

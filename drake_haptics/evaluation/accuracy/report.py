@@ -17,6 +17,7 @@ from drake_haptics.evaluation.accuracy.pareto import (
     find_front,
     get_force_error_N,
     get_native_us,
+    get_tick_us,
 )
 from drake_haptics.evaluation.accuracy.setting import find_model_change
 from drake_haptics.evaluation.measuring.timing import TickTimes, name_machine
@@ -26,8 +27,8 @@ SCENE_MARK = "*"
 MODEL_MARK = "†"
 # Smaller figures are round-off.
 _LEAST_SHOWN = {"N": 5e-4, "µm": 5e-4, "°": 0.05, "mJ": 5e-4}
-# Times must differ by this share to be worth a sentence: two runs do by half of it.
-_NOISE = 0.1
+# A setting is worth a sentence if it saves this share of a tick.
+_WORTH = 0.1
 # A ratio this near to a simple one is told as that.
 _ROUND = 0.05
 
@@ -168,13 +169,14 @@ def name_setting(row: Row) -> str:
 
 
 def describe_verdict(study: AccuracyStudy) -> list[str]:
-    """Says what the scene as it is costs, how wrong it is, and what beats it."""
+    """Advises on a setting, and says what the scene costs and how wrong it is."""
     scene = find_scene_row(study)
     if scene is None or scene.cost is None or scene.errors is None:
         return ["The scene as it is could not be measured."]
     tick = scene.cost.tick
     wrong = scene.errors.force_rms_N
-    sentences = [
+    return [
+        _advise(study, scene),
         f"A tick of the scene as it is takes {format_us(tick.median_us)} µs (p99"
         f" {format_us(tick.p99_us)} µs), contact inside the core"
         f" {format_us(scene.cost.native.median_us)} µs of it. Its force is "
@@ -183,25 +185,12 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
             if wrong < ERROR_FLOOR_N
             else f"off by {format_N(wrong)} rms, {format_N(scene.errors.force_max_N)}"
             " at most."
-        )
+        ),
     ]
-    better = _find_better(study, scene)
-    if better is None:
-        sentences.append("No setting here is both faster and more exact.")
-    else:
-        exact = (
-            "more exact"
-            if get_force_error_N(better) < get_force_error_N(scene)
-            else "as exact"
-        )
-        sentences.append(
-            f"{name_setting(better)} is faster and {exact}: {_describe_price(better)}."
-        )
-    return sentences
 
 
 def describe_knees(study: AccuracyStudy) -> list[str]:
-    """Says of each knee what it costs beside the scene, and what lies beyond it."""
+    """Describes each knee: its cost beside the scene, and what lies beyond it."""
     # Over time inside the core, which noise disturbs least.
     front = find_front(study, get_native_us)
     scene = find_scene_row(study)
@@ -285,6 +274,36 @@ def describe_machine(study: AccuracyStudy) -> str:
     )
 
 
+def _advise(study: AccuracyStudy, scene: Row) -> str:
+    """Returns one sentence on what to set."""
+    better = _find_better(study, scene)
+    if better is not None:
+        is_more = get_force_error_N(better) < get_force_error_N(scene)
+        return (
+            f"Take {name_setting(better)}, which is faster and"
+            f" {'more' if is_more else 'as'} exact: {_describe_price(better)}."
+        )
+    faster = [
+        knee
+        for knee in find_front(study, get_native_us).knees
+        if _is_faster(knee, scene)
+    ]
+    if not faster:
+        return (
+            "Leave the scene as it is: no setting worth its error saves"
+            f" {100.0 * _WORTH:g} % of a tick."
+        )
+    return (
+        "Leave the scene as it is, or if ticks must be faster take"
+        f" {name_setting(faster[-1])}: {_describe_price(faster[-1])}."
+    )
+
+
+def _is_faster(row: Row, scene: Row) -> bool:
+    """Tells whether what a row saves in the core is worth it in the scene's tick."""
+    return get_native_us(scene) - get_native_us(row) > _WORTH * get_tick_us(scene)
+
+
 def _find_better(study: AccuracyStudy, scene: Row) -> Row | None:
     """Returns the fastest row that beats the scene in time and error, if one does."""
     better = [
@@ -293,7 +312,7 @@ def _find_better(study: AccuracyStudy, scene: Row) -> Row | None:
         if row.cost is not None
         and row.errors is not None
         and not find_model_change(row.setting)
-        and get_native_us(row) < (1.0 - _NOISE) * get_native_us(scene)
+        and _is_faster(row, scene)
         and get_force_error_N(row) <= get_force_error_N(scene)
     ]
     return min(better, key=get_native_us, default=None)

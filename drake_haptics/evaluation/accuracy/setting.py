@@ -118,7 +118,7 @@ def find_model_change(setting: Setting) -> str:
 
 
 def is_comparable(setting: Setting) -> bool:
-    """Whether a setting's figure is an error, which another one may beat.
+    """Tells whether a setting's figure is an error, which another one may beat.
 
     One of another model is exact in what it does, see `find_model_change`; in another
     loop a tick is another share of a second, or leaves out what it has no time for.
@@ -128,7 +128,7 @@ def is_comparable(setting: Setting) -> bool:
 
 
 def is_effect(setting: Setting) -> bool:
-    """Whether a setting takes away or changes an effect that a scene names."""
+    """Tells whether a setting takes away or changes an effect that a scene names."""
     return any(key.startswith(_EFFECTS) for key in setting.changes)
 
 
@@ -181,7 +181,7 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
         if not any(name == key or name.startswith(f"{key}.") for name in known):
             near = difflib.get_close_matches(key, known, n=1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise HapticsError(f"{key} is no key of a scene{hint}")
+            raise HapticsError(f"{key} is not a key of a scene{hint}")
     try:
         changed = setting.apply(scene)
     except AttributeError as error:  # Of a part that the scene leaves out.

@@ -103,7 +103,7 @@ class Measurement:
 
     @property
     def duration_s(self) -> float:
-        """Of the motion, s."""
+        """Duration of the motion, s."""
         return len(self.motion) * self.motion.period_s
 
     def _measure_errors(self, scene: Scene) -> dict[str, Any]:

@@ -100,7 +100,7 @@ class Truth:
 
     @property
     def num_contact_ticks(self) -> int:
-        """At how many ticks there is a contact."""
+        """Number of ticks with a contact."""
         return int(np.isfinite(self.distance).sum())
 
     def find_busiest(self, num_ticks: int) -> tuple[int, int]:

@@ -54,7 +54,7 @@ _LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is measured.
+    """The extent of a measurement.
 
     Attributes:
         sizes: Sizes of the bodies of convex pairs, vertices.

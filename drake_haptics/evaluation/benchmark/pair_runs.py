@@ -73,7 +73,7 @@ def support_gaps(
 
 @dataclass(frozen=True)
 class PairFigures:
-    """What one library cost on one pair, and how right it was.
+    """Times and errors of one library on one pair.
 
     Attributes:
         kind: Kind of the pair.

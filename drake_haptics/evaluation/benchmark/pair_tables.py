@@ -1,4 +1,4 @@
-"""Makes the tables of what convex pairs cost."""
+"""Makes the tables of times and errors of convex pairs."""
 
 from __future__ import annotations
 

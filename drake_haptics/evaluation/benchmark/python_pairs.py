@@ -16,7 +16,7 @@ from drake_haptics.evaluation.measuring.timing import typical
 
 @dataclass(frozen=True)
 class PythonFigures:
-    """What one query costs a Python program, from the pose to the distance.
+    """Time of one query from a Python program, from the pose to the distance.
 
     Attributes:
         kind: Kind of the pair.
@@ -34,7 +34,7 @@ class PythonFigures:
 
     @property
     def ratio(self) -> float:
-        """Of this package to coal."""
+        """Ratio of this package's time to coal's."""
         return self.ours_us / self.coal_us
 
 

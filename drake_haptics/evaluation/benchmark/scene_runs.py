@@ -124,7 +124,7 @@ def _native_scene() -> ctypes.CDLL:
 
 @dataclass(frozen=True)
 class SceneFigures:
-    """What one library cost in one scene.
+    """Times of one library in one scene.
 
     Attributes:
         scene: Name of the scene.

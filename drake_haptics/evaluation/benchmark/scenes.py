@@ -31,7 +31,7 @@ _SEARCH_STEP_M = 0.002
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """What all libraries are asked in a scene.
+    """The queries of a scene, the same for all libraries.
 
     Attributes:
         name: Name of the scene.

@@ -1,4 +1,4 @@
-"""Takes and sums up times, and describes the machine that they were taken on."""
+"""Measures and sums up times, and describes the machine."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class CallTimer:
 
 @dataclass(frozen=True)
 class TickTimes:
-    """How long ticks took.
+    """Median and percentiles of the times of ticks.
 
     Attributes:
         median_us: Median, µs.

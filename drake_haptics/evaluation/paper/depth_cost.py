@@ -106,7 +106,7 @@ class DepthCost:
 
 @dataclass(frozen=True)
 class DepthCosts:
-    """How the cost grows with the bodies.
+    """The cost of one depth over the size of the bodies.
 
     Attributes:
         rows: By triangles.

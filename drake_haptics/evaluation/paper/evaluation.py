@@ -38,7 +38,7 @@ _FINE_DIVISIONS = 5
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is measured.
+    """The extent of a measurement.
 
     Attributes:
         profile_s: Of each path of Figure 11, s; all of it if not given.
@@ -82,7 +82,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Analysis:
-    """What section 6.3 is about.
+    """The figures of section 6.3.
 
     Attributes:
         depths: Cost of a depth over triangles.

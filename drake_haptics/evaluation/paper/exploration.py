@@ -34,7 +34,7 @@ _MAX_FORCE_N, _MAX_TORQUE_NM = 8.5, 0.515
 
 @dataclass(frozen=True)
 class Place:
-    """Where the tool comes in, and how far the hand goes on after first touch.
+    """Where the tool comes in, and how far the hand moves on after first touch.
 
     Attributes:
         X_WT: Pose before it comes in, free of contact.

@@ -175,7 +175,7 @@ class Interval:
 
     @property
     def letter(self) -> str:
-        """As the paper's Figure 11 marks it: P or D."""
+        """The mark of the paper's Figure 11: P or D."""
         return "P" if self.penetrating else "D"
 
 
@@ -239,7 +239,7 @@ class StateTimes:
 
 @dataclass(frozen=True)
 class ProfileFigures:
-    """What a run comes to.
+    """The figures of a run.
 
     Attributes:
         name: Of the scenario.
@@ -288,7 +288,7 @@ class ProfileFigures:
 
     @property
     def rate_Hz(self) -> float:
-        """What the loop could do: 99 of 100 ticks take less than its period."""
+        """Rate of the loop, Hz: 99 of 100 ticks take less than its period."""
         return 1e6 / self.all_ticks.tick.p99_us
 
     def to_dict(self) -> dict[str, Any]:

@@ -57,7 +57,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Block:
-    """What belongs together in a section.
+    """Statements and pictures that belong together in a section.
 
     Attributes:
         title: A line; empty where the section's is enough.
@@ -88,12 +88,12 @@ class Section:
 
     @property
     def statements(self) -> list[Statement]:
-        """Those of all blocks."""
+        """All of them, of all blocks."""
         return [statement for block in self.blocks for statement in block.statements]
 
     @property
     def pictures(self) -> list[Picture]:
-        """Those of all blocks."""
+        """All of them, of all blocks."""
         return [picture for block in self.blocks for picture in block.pictures]
 
 
@@ -213,11 +213,29 @@ def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:
         path,
         "evaluation/paper/page.html",
         summary=summarize(sections),
+        counts=count_verdicts(sections),
         machine=describe_machine_line(evaluation),
         sections=sections,
         pictures=pictures,
     )
     return paths
+
+
+def count_verdicts(sections: Sequence[Section]) -> Table:
+    """Counts the statements of each verdict, a row for each section and one for all."""
+
+    def make_row(title: str, statements: Sequence[Statement]) -> tuple[str, ...]:
+        counts = Counter(statement.verdict for statement in statements)
+        return (title, *(str(counts[x]) for x in MEANING), str(counts.total()))
+
+    rows = [make_row(section.title, section.statements) for section in sections]
+    every = [statement for section in sections for statement in section.statements]
+    return Table(
+        "Statements",
+        "Each statement compares one figure with the paper's.",
+        ("part of the paper", *MEANING, "all"),
+        [*rows, make_row("all", every)],
+    )
 
 
 def summarize(sections: Sequence[Section]) -> str:

@@ -115,7 +115,7 @@ def plan_slide(ticks: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class ForceScaling:
-    """What one way of clustering makes of many contacts.
+    """Forces and times of many contacts, for one way of clustering.
 
     Attributes:
         method: "octree" (the paper's) or "shared".

@@ -76,7 +76,7 @@ class MergedPatches:
 
 
 def _are_labels(labels: np.ndarray, count: int) -> bool:
-    """Whether an array is one of `count` numbers from 0 without gaps."""
+    """Tells whether an array is one of `count` numbers from 0 without gaps."""
     if labels.dtype != np.int32 or labels.shape != (count,) or labels.min() < 0:
         return False
     return bool((np.bincount(labels, minlength=1) > 0).all())

@@ -19,7 +19,7 @@ _MANY_PIECES = 2000
 
 @dataclass(frozen=True)
 class DecompositionReport:
-    """What a mesh was cut into.
+    """The outcome of a decomposition.
 
     Attributes:
         source: file or name of the mesh.

@@ -42,7 +42,7 @@ def read_pieces(path: Path, key: str, mesh: Mesh) -> PieceData:
     """
     facts, arrays = read_archive(path)
     if facts.get("key") != key:
-        raise DecompositionFileError(f"{path}: is the entry of another mesh")
+        raise DecompositionFileError(f"{path}: is the cache entry of another mesh")
     return _unpack_pieces(path, facts, arrays, mesh)
 
 

@@ -98,7 +98,7 @@ def check_components(
                 Severity.DEFECT,
                 twisted,
                 f"{count(twisted, 'part')} {'has' if twisted == 1 else 'have'} only"
-                " one side, as a Möbius strip",
+                " one side, like a Möbius strip",
                 "left as wound; they bound no solid, their pieces are one-sided",
             )
         )

@@ -124,7 +124,7 @@ def _drop_folded(triangles: np.ndarray) -> np.ndarray:
 
 
 def _is_alike(mesh: Mesh, fewer: Mesh) -> bool:
-    """Whether a mesh still has all parts and no defect that is new."""
+    """Tells whether a mesh still has all parts and no defect that is new."""
     known = {finding.code for finding in mesh.report.unclean}
     is_open = bool(mesh.report.one_sided_triangles)
     return (

@@ -96,7 +96,7 @@ class Mesh:
     def from_arrays(
         vertices: Any, triangles: Any, *, name: str = "mesh", strict: bool = False
     ) -> Mesh:
-        """Takes in arrays.
+        """Makes a mesh of arrays.
 
         Args:
             vertices: (n, 3) real numbers, m.
@@ -271,7 +271,7 @@ def _read_only(array: np.ndarray, dtype: Any) -> np.ndarray:
 
 
 def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
-    """Returns how a tool moves, for `AddHapticLoop`: as one of its mesh's shape does.
+    """Returns the dynamics of a tool of a mesh's shape, for `AddHapticLoop`.
 
     Args:
         mesh: Of one density, as `calc_mass_properties` takes it.
@@ -284,7 +284,7 @@ def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
 
 
 def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.ndarray]:
-    """Returns where the mass of a mesh is and how it resists turning.
+    """Returns mass, center of mass and rotational inertia of a mesh.
 
     A mesh that bounds solids is filled with one density; one that is open in any
     part is a shell of one density per area.

@@ -28,7 +28,7 @@ _TEXT = 1000
 
 @dataclass(frozen=True)
 class RawMesh:
-    """What a file holds, in the file's own unit.
+    """The content of a file, in the file's unit.
 
     Attributes:
         vertices: (n, 3) positions in the file's unit.

@@ -303,7 +303,7 @@ def _turn_edges(
 
 
 def _other_triangle(edges: Edges, num_triangles: int) -> np.ndarray:
-    """For each half-edge the triangle across its edge, -1 unless just one."""
+    """Returns for each half-edge the triangle across its edge, -1 unless just one."""
     other = np.full(3 * num_triangles, -1)
     two = edges.count[edges.of_halfedge] == 2
     halfedges = np.flatnonzero(two)

@@ -15,7 +15,7 @@ from drake_haptics.common.one_line import count
 
 
 class Severity(str, Enum):
-    """How much a finding matters.
+    """The severity of a finding.
 
     NOTE: says something about the file; its surface is unchanged.
     QUESTION: possibly a mistake that only its author can judge.
@@ -79,7 +79,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class MeshReport:
-    """What a mesh is, and every finding of its intake.
+    """Size and kind of a mesh, and every finding of its intake.
 
     Attributes:
         source: file or name of the mesh.
@@ -118,7 +118,7 @@ class MeshReport:
 
     @property
     def refusal(self) -> str:
-        """Why a strict intake refuses the mesh; for one that is unclean."""
+        """The reason why a strict intake refuses an unclean mesh."""
         found = "; ".join(finding.message for finding in self.unclean)
         return (
             f"{self.source}: refused, because a strict intake repairs nothing: "
@@ -127,7 +127,7 @@ class MeshReport:
 
     @property
     def verdict(self) -> str:
-        """One sentence: what the mesh is good for."""
+        """One sentence that says what the mesh is good for."""
         if self.solids == self.components:
             plural = "one solid" if self.solids == 1 else count(self.solids, "solid")
             return f"Usable as {plural}: closed and wound outward."

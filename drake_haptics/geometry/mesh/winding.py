@@ -136,7 +136,7 @@ def _containers(
     closed: np.ndarray,
     volume: np.ndarray,
 ) -> dict[int, list[int]]:
-    """For each closed component the closed components around it."""
+    """Returns for each closed component the closed components around it."""
     candidates = np.flatnonzero(closed)
     order = np.argsort(component, kind="stable")
     start = np.searchsorted(component[order], np.arange(len(closed) + 1))

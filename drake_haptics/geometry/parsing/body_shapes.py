@@ -160,7 +160,7 @@ def _find_corners(shape: Shape, chord_error_m: float) -> np.ndarray:
         Capsule: lambda s: make_capsule_corners(s.radius(), s.length(), chord_error_m),
     }
     if isinstance(shape, HalfSpace):
-        raise ValueError("is a HalfSpace, which has no end: use a large Box instead")
+        raise ValueError("is a HalfSpace, which is infinite: use a large Box instead")
     if isinstance(shape, MeshcatCone):
         raise ValueError("is a MeshcatCone, which is only drawn: use a Mesh instead")
     if type(shape) not in find:

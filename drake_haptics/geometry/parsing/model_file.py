@@ -25,7 +25,7 @@ _SUFFIXES = (".sdf", ".urdf", ".xml", ".yaml")
 
 
 def is_model_file(path: str | os.PathLike[str]) -> bool:
-    """Whether a file's name is that of a model that Drake's parser reads."""
+    """Tells whether a file's name is that of a model that Drake's parser reads."""
     return Path(path).suffix.lower() in _SUFFIXES
 
 

@@ -25,7 +25,7 @@ export function showDevice({gate, fault, silent_s}) {
   notify("silent", isFault && silence ? `The device's driver has been silent for ${silence} s or more: is it running?`
     + " No force is shown." : "", {kind: "fault"});
   notify("fault", isFault && !silence ? `The device shows no force: ${FAULTS[fault] ?? "it is at fault"}. Mend that,`
-    + " hold it, and take it up again." : "",
+    + " hold it, and enable it again." : "",
     {kind: "fault", buttons: [{label: "Take it up again", act: () => say({do: "resume"})}]});
   waitsFrom = gate === "waiting" ? waitsFrom ?? performance.now() : null;
   const isLong = waitsFrom !== null && performance.now() - waitsFrom > PATIENCE_MS;

@@ -289,7 +289,9 @@ def test_losses_are_told_by_the_gaps():
     "url", ["udp://1", "udpm://1.2.3.4:7667", "udpm://239.255.76.67", "file://a", "x"]
 )
 def test_a_url_that_lcm_cannot_use(url):
-    with pytest.raises(DeviceError, match=f"'{url}' is no LCM URL: give one such as"):
+    with pytest.raises(
+        DeviceError, match=f"'{url}' is not an LCM URL: give one such as"
+    ):
         LcmDevice.open(url)
 
 
@@ -302,7 +304,7 @@ def test_an_address_as_a_person_writes_it():
     scene = load_scene(find_scene("sphere_pen"))
     with open_device("lcm:memq://", scene) as device:
         assert isinstance(device, LcmDevice)
-    with pytest.raises(DeviceError, match="'udp://1' is no LCM URL"):
+    with pytest.raises(DeviceError, match="'udp://1' is not an LCM URL"):
         open_device("lcm:udp://1", scene)
 
 

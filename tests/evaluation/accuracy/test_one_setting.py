@@ -70,7 +70,7 @@ def test_a_key_that_is_there_twice():
         ('effects.gravity={"g": 9.8}', "effects.gravity: .*'g'"),
         ("tool.mass_kg=heavy", "tool.mass_kg: expected a finite number"),
         ("tool.mass_kg=-1", "tool.mass_kg must be positive, is -1"),
-        ("environment.0.x=1", "environment.0.x is no key of a scene"),
+        ("environment.0.x=1", "environment.0.x is not a key of a scene"),
         ("effects.friction=null", "friction_coefficient means nothing without"),
         ("environment.scale=[1]", r"environment\[0\].scale: expected a finite number"),
     ],

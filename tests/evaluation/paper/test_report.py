@@ -8,6 +8,7 @@ from paper_samples import make_evaluation, make_run
 
 from drake_haptics.evaluation.paper.plots import draw_profile
 from drake_haptics.evaluation.paper.report import (
+    count_verdicts,
     make_sections,
     summarize,
     write_paper_page,
@@ -51,6 +52,11 @@ def test_statements_are_counted():
     text = summarize(sections)
     numbers = list(map(int, re.findall(r"\d+", text)))
     assert numbers[0] == total == sum(numbers[1:])
+    rows = [list(map(int, row[1:])) for row in count_verdicts(sections).rows]
+    assert all(sum(counts) == all_of_row for *counts, all_of_row in rows)
+    *parts, everything = rows
+    assert [sum(column) for column in zip(*parts, strict=True)] == everything
+    assert everything[-1] == total
     for words in ("agree with the paper", "differ from it", "were not measured"):
         assert words in text
 

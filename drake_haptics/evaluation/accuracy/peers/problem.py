@@ -48,7 +48,7 @@ class PeerProblem:
 
 @dataclass(frozen=True, eq=False)
 class PeerAnswers:
-    """What a library answered at each of n ticks.
+    """The answers of a library at each of n ticks.
 
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] on the tool at its origin in the world, N·m, N.

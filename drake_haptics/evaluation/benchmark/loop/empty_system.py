@@ -11,7 +11,7 @@ from drake_haptics.evaluation.benchmark.loop.simulated_ticks import time_ticks
 
 
 class EmptyLoop:
-    """What Drake's Simulator and one call of Python take in each tick."""
+    """An empty tick: Drake's Simulator and one call of Python."""
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
         """Makes the system.

@@ -63,7 +63,7 @@ class LoopTimes:
 
 @dataclass(frozen=True)
 class LoopFigures:
-    """What one loop cost, and what it did.
+    """The times of one loop, and its motion.
 
     Attributes:
         scene: Its name.

@@ -23,7 +23,7 @@ from drake_haptics.scene.schema import Scene
 
 @dataclass(frozen=True, eq=False)
 class LoopProblem:
-    """What every loop is given.
+    """The problem that every loop is given.
 
     Attributes:
         name: Of the scene.
@@ -75,7 +75,7 @@ class LoopProblem:
 
 @dataclass(frozen=True, eq=False)
 class LoopCourse:
-    """What happened in a loop, at the beginning of each of n ticks.
+    """Forces and motions of a loop, at the beginning of each of n ticks.
 
     Attributes:
         X_WT: (n, 7) poses of the tool, m.

@@ -77,7 +77,7 @@ class ThisLoop:
 
 
 class BackendLoop(ThisLoop):
-    """The same with a `DeviceBackend` that is written in Python, as yours may be."""
+    """The whole loop with a `DeviceBackend` in Python, as a user writes it."""
 
     def _build(self) -> HapticDiagram:
         self._backend = _RecordedBackend(self._problem)
@@ -112,7 +112,7 @@ class _RecordedBackend(DeviceBackend):
 
     @property
     def is_placed(self) -> bool:
-        """Whether its base is where the scene has it: always."""
+        """Tells whether its base is where the scene has it: always."""
         return True
 
     def rewind(self) -> None:
@@ -131,7 +131,7 @@ class _RecordedBackend(DeviceBackend):
 
 
 class NativeLoop:
-    """What that loop computes, in the core alone: no Drake, no Python between ticks."""
+    """The computations of the loop in the core: no Drake, no Python between ticks."""
 
     def __init__(self, problem: LoopProblem):
         self._problem = problem

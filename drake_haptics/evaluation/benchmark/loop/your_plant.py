@@ -75,7 +75,7 @@ class PlantLoop:
 
     @property
     def diagram(self) -> Diagram:
-        """What is run."""
+        """The diagram that is run."""
         return self._diagram
 
     def observe(self) -> LoopCourse:
