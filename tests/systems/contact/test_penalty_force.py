@@ -52,16 +52,6 @@ def fix(force, context, clusters, V_WT=AT_REST):
     force.GetInputPort("V_WT").FixValue(context, V_WT)
 
 
-def test_topology(plate):
-    force, _ = make_force([ContactObject("cart", plate)])
-    names = [force.get_input_port(i).get_name() for i in range(force.num_input_ports())]
-    assert names == ["clusters", "X_WT", "V_WT", "X_WO_cart", "V_WO_cart"]
-    assert force.GetOutputPort("wrench_model").size() == 78
-    assert force.GetOutputPort("F_To_W").size() == 6
-    assert force.GetOutputPort("F_O_W").size() == 6
-    assert force.CreateDefaultContext().num_total_states() == 0
-
-
 def test_a_pressed_box_is_pushed_up(plate, clusters):
     assert len(clusters) == 1
     force, context = make_force([ContactObject("plate", plate, RigidTransform())])

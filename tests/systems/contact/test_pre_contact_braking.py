@@ -35,17 +35,6 @@ def make_braking(objects, **options):
     return PreContactBraking(objects, damping_Ns_per_m=B, distance_m=D, **options)
 
 
-def test_topology(plate):
-    braking = make_braking([ContactObject("cart", plate)])
-    count = braking.num_input_ports()
-    names = [braking.get_input_port(i).get_name() for i in range(count)]
-    assert names == ["contacts", "X_WT", "V_WT", "X_WO_cart", "V_WO_cart"]
-    assert braking.num_output_ports() == 2
-    assert braking.GetOutputPort("wrench_model").size() == 78
-    assert braking.GetOutputPort("F_O_W").size() == 6
-    assert braking.CreateDefaultContext().num_total_states() == 0
-
-
 def fixed(braking, contacts, height, V_WT):
     context = braking.CreateDefaultContext()
     braking.GetInputPort("contacts").FixValue(context, Value[object](contacts))

@@ -31,13 +31,6 @@ def evaluate(coupling, X_WT, V_WH=AT_REST, V_WT=AT_REST):
     )
 
 
-def test_topology(coupling):
-    names = [coupling.get_input_port(i).get_name() for i in range(4)]
-    assert names == ["X_WH", "V_WH", "X_WT", "V_WT"]
-    assert coupling.GetOutputPort("wrench_model").size() == 78
-    assert coupling.GetOutputPort("F_Ho_W_commanded").size() == 6
-
-
 def test_it_has_no_state_and_no_delay(coupling):
     assert coupling.CreateDefaultContext().num_total_states() == 0
     assert coupling.HasDirectFeedthrough(0, 1)
