@@ -68,22 +68,6 @@ def test_a_loop_that_sheds_load_brakes_later(cube, plate):
     np.testing.assert_allclose(model[3:6], [0, 0, B * 0.2], atol=1e-9)
 
 
-def test_only_the_motion_between_the_two_counts(cube, plate):
-    cart = [ContactObject("cart", plate)]
-    query, braking = ContactQuery(cube, cart, D), make_braking(cart)
-    height = TOUCH + 0.5 * D
-    query_context = query.CreateDefaultContext()
-    query.GetInputPort("X_WO_cart").FixValue(query_context, at_height(0.0))
-    contacts = query_at(query, query_context, height)
-    context = fixed(braking, contacts, height, 0.2 * DOWN)
-    braking.GetInputPort("X_WO_cart").FixValue(context, at_height(0.0))
-    velocity = braking.GetInputPort("V_WO_cart")
-    for speed, force in [(0.2, 0.0), (0.0, 0.2 * B), (-0.1, 0.3 * B)]:
-        velocity.FixValue(context, speed * DOWN)
-        model = braking.GetOutputPort("wrench_model").Eval(context)
-        assert model[5] == pytest.approx(force, abs=1e-12)
-
-
 def test_nothing_that_moves_has_no_reaction(plate):
     braking = make_braking([ContactObject("plate", plate, RigidTransform())])
     assert not braking.HasOutputPort("F_O_W")
@@ -168,14 +152,6 @@ def test_a_falling_tool_slows_as_the_differential_equation_says(cube, plate):
     # The tool's step is of first order.
     np.testing.assert_allclose(v, expected, atol=2e-3 * speed)
     assert v[-1] == pytest.approx(-(speed - 2 * B * D / (3 * mass)), rel=5e-3)
-
-
-def test_a_slow_tool_stops_before_it_touches(cube, plate):
-    mass, period = 0.1, 1e-3
-    speed = 0.9 * 2 * B * D / (3 * mass)
-    d, v = approach(cube, plate, speed, mass, period, 500)
-    assert d.min() > 0
-    assert abs(v[-1]) < 1e-4
 
 
 def near(rng, angle, way):
