@@ -18,11 +18,10 @@ STUDY = make_study(peers=make_peers())
 
 
 def test_the_verdict_is_that_of_the_scene():
-    assert describe_verdict(STUDY) == [
-        "A tick of the scene as it is takes 150 µs (p99 300 µs), contact inside the"
-        " core 24.0 µs of it. Its force is off by 0.004 N rms, 0.016 N at most.",
-        "No setting here is both faster and more exact.",
-    ]
+    figures, verdict = describe_verdict(STUDY)
+    assert "150 µs (p99 300 µs)" in figures and "24.0 µs" in figures
+    assert "0.004 N rms, 0.016 N at most" in figures
+    assert verdict == "No setting here is both faster and more exact."
 
 
 def test_a_setting_that_beats_the_scene_is_named():
@@ -31,10 +30,8 @@ def test_a_setting_that_beats_the_scene_is_named():
     noise = make_row("tool.max_triangles", "950", 150.0, 23.5, 0.0)
     model = make_row("contact.depth", "a", 140.0, 2.0, 0.0, contact__depth="tracked")
     (_, words) = describe_verdict(make_study(scene, noise, model, better))
-    assert words == (
-        "tool.max_triangles 900 is faster and more exact: 20.0 µs in the core, a tick"
-        " of 140 µs, for 0.010 N rms."
-    )
+    assert "tool.max_triangles 900 is faster and more exact: 20.0 µs" in words
+    assert "140 µs, for 0.010 N rms" in words
 
 
 def test_a_faster_setting_with_the_scenes_own_error_is_not_called_more_exact():
@@ -62,11 +59,9 @@ def test_a_knee_is_compared_with_the_scene_and_its_neighbors():
     (words,) = describe_knees(STUDY)
     # 2.1 µs and 2.4 N on one side: 5.9 µs for 1.68 decades; 24 µs and 4 mN on the
     # other: 16 µs for 1.10.
-    assert words == (
-        "tool.max_triangles 200: 8.00 µs in the core, a tick of 145 µs, for 0.050 N"
-        " rms, a third of the scene's time there. Up to it a tenth of the error costs"
-        " 3.51 µs, beyond it 14.6."
-    )
+    assert words.startswith("tool.max_triangles 200: 8.00 µs in the core")
+    assert "145 µs, for 0.050 N rms, a third of the scene's time" in words
+    assert "3.51 µs, beyond it 14.6" in words
 
 
 def test_half_is_called_so():
