@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from accuracy_samples import make_peers, make_study
-from headless_browser import HeadlessBrowser, find_browser
+from headless_browser import HeadlessBrowser
 from held_samples import analyze_sample
 from paper_samples import make_evaluation
 
@@ -13,12 +13,9 @@ from drake_haptics.evaluation.paper.report import write_paper_page
 
 
 @pytest.fixture(params=[(1280, False), (390, True)], ids=["desk", "phone"])
-def browser(request):
-    executable = find_browser()
-    if executable is None:
-        pytest.skip("no Chromium on the PATH")
+def browser(chromium, request):
     width, is_phone = request.param
-    with HeadlessBrowser(executable) as browser:
+    with HeadlessBrowser(chromium) as browser:
         browser.resize(width, height=900, is_phone=is_phone)
         browser.is_phone = is_phone
         yield browser
