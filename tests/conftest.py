@@ -24,7 +24,7 @@ FOLDER = Path(__file__).parent
 LONGEST = (
     "core/test_cpp.py",
     "acceptance/test_readme.py",
-    "acceptance/test_cockpit_in_browser.py",
+    "acceptance/cockpit_in_browser/test_values.py",
     "stability/test_slow_ticks.py",
     "acceptance/test_docs_site.py",
     "stability/test_rest_cup_and_spoon.py",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from drake_haptics.analysis.exact_boundary import calc_boundary_peak
@@ -20,6 +20,7 @@ from drake_haptics.bounds.sampled_spring import (
     calc_stable_stiffness,
 )
 from drake_haptics.common.one_line import one_line
+from drake_haptics.report.plain_data import to_plain_data
 
 # As B T/m. The laws that the gains come from are of first order in it.
 _LARGEST_BETA = 0.2
@@ -100,7 +101,8 @@ class AxisDesign:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""
-        return asdict(self) | {"margins": [asdict(margins) for margins in self.margins]}
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain
 
 
 def design_axis(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from drake_haptics.bounds.sampled_spring import (
 )
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, HandGrip
@@ -175,14 +176,8 @@ class CouplingDesign:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""
-        return {
-            "coupling": asdict(self.coupling),
-            "period_s": self.period_s,
-            "delay_s": self.delay_s,
-            "margin": self.margin,
-            "translation": self.translation.to_dict(),
-            "rotation": None if self.rotation is None else self.rotation.to_dict(),
-        }
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain
 
 
 @on_one_blas_thread

@@ -19,7 +19,7 @@ it; for small θ it is the law of Gil et al., α = β/(½ + d).
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from scipy.optimize import brentq
 
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least
+from drake_haptics.report.plain_data import to_plain_data
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,10 +87,8 @@ class ExactBoundary:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only."""
-        return asdict(self) | {
-            "beta": self.beta.tolist(),
-            "alpha": self.alpha.tolist(),
-        }
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain
 
 
 def calc_exact_boundary(delay_samples: int, points: int = 200) -> ExactBoundary:

@@ -6,7 +6,7 @@ import enum
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from scipy.linalg import block_diag, eig
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.report.plain_data import to_plain_data
 
 
 @dataclass(frozen=True)
@@ -55,11 +56,8 @@ class PeriodMap:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields and the eigenvalues ([re, im] each), ready for JSON."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return {
-            name: value.tolist() if isinstance(value, np.ndarray) else value
-            for name, value in values.items()
-        } | {"eigenvalues": [[z.real, z.imag] for z in self.eigenvalues()]}
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain | {"eigenvalues": [[z.real, z.imag] for z in self.eigenvalues()]}
 
 
 def check_return(

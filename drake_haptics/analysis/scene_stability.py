@@ -7,7 +7,7 @@ import os
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -29,12 +29,12 @@ from drake_haptics.analysis.stiffness_limits import (
     Kind,
     StiffnessLimits,
     find_stiffness_limits,
-    none_unless_finite,
 )
 from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth, calc_z_width
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_scene_handle, check_scene_coupling
 from drake_haptics.common.one_line import one_line
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.scene.schema import Scene
 
 if TYPE_CHECKING:
@@ -124,29 +124,32 @@ class SceneStability:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns all of it, ready for JSON."""
-        return {
-            "description": self.scene.description,
-            "device": self.scene.device.preset,
-            "grip": self.scene.hand.grip,
-            "coupling": asdict(self.scene.coupling),
-            "period_s": self.period_s,
-            "time_s": self.time_s,
-            "restless_s": list(self.restless_s),
-            "handle": asdict(self.handle),
-            "num_contacts": self.num_contacts,
-            "contact_force_N": self.contact_force_N,
-            "growth": self.growth,
-            "is_stable": self.is_stable,
-            "is_passive": self.is_passive,
-            "delay_margin_s": none_unless_finite(self.delay_margin_s),
-            "limits": [limit.to_dict() for limit in self.limits],
-            "linearization": self.linearization.to_dict(),
-            "modes": [mode.to_dict() for mode in self.modes],
-            "passivity": self.felt.to_dict()
-            | {"damping_usage": self.damping_usage.tolist()},
-            "broken_bounds": list(self.broken_bounds),
-            "map": None if self.map is None else self.map.to_dict(),
-        }
+        plain: dict[str, Any] = to_plain_data(
+            {
+                "description": self.scene.description,
+                "device": self.scene.device.preset,
+                "grip": self.scene.hand.grip,
+                "coupling": self.scene.coupling,
+                "period_s": self.period_s,
+                "time_s": self.time_s,
+                "restless_s": self.restless_s,
+                "handle": self.handle,
+                "num_contacts": self.num_contacts,
+                "contact_force_N": self.contact_force_N,
+                "growth": self.growth,
+                "is_stable": self.is_stable,
+                "is_passive": self.is_passive,
+                "delay_margin_s": self.delay_margin_s,
+                "limits": [limit.to_dict() for limit in self.limits],
+                "linearization": self.linearization.to_dict(),
+                "modes": [mode.to_dict() for mode in self.modes],
+                "passivity": self.felt.to_dict()
+                | {"damping_usage": self.damping_usage},
+                "broken_bounds": self.broken_bounds,
+                "map": None if self.map is None else self.map.to_dict(),
+            }
+        )
+        return plain
 
 
 def analyze_scene(

@@ -22,6 +22,7 @@ from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.scene.schema import CouplingParameters
 
 Kind = Literal["translation", "rotation"]
@@ -85,11 +86,10 @@ class StiffnessLimits:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields and the margin, None for what is not finite."""
-        figures = asdict(self) | {"unit": self.unit, "gain_margin": self.gain_margin}
-        return {
-            name: none_unless_finite(value) if isinstance(value, float) else value
-            for name, value in figures.items()
-        }
+        plain: dict[str, Any] = to_plain_data(
+            asdict(self) | {"unit": self.unit, "gain_margin": self.gain_margin}
+        )
+        return plain
 
 
 @on_one_blas_thread
@@ -207,11 +207,6 @@ def _make_wall(
         hand_stiffness=handle.rotational_stiffness_Nm_per_rad,
         true_velocity=True,
     )
-
-
-def none_unless_finite(value: float) -> float | None:
-    """Returns a number that JSON can hold, or None."""
-    return value if math.isfinite(value) else None
 
 
 def format_limit(value: float) -> str:

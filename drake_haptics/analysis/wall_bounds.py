@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from drake_haptics.bounds.sampled_spring import (
 )
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
+from drake_haptics.report.plain_data import to_plain_data
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,14 +74,8 @@ class DelayBounds:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only."""
-        return {
-            "wall": asdict(self.wall),
-            "delays_s": self.delays_s.tolist(),
-            "exact": self.exact.tolist(),
-            "law": self.law.tolist(),
-            "passive": self.passive.tolist(),
-            "largest_delay_s": self.largest_delay_s,
-        }
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain
 
 
 @on_one_blas_thread
@@ -151,11 +146,8 @@ class QuantizationBounds:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only."""
-        return {
-            "resolutions": self.resolutions.tolist(),
-            "stiffness": self.stiffness.tolist(),
-            "sufficient_resolution": self.sufficient_resolution,
-        }
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain
 
 
 def calc_quantization_bounds(

@@ -19,6 +19,7 @@ from drake_haptics.bounds.sampled_spring import (
 from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, UNSTABLE
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
+from drake_haptics.report.plain_data import to_plain_data
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,55 +71,6 @@ class HeldBounds:
         return calc_stable_stiffness(
             self.held_damping, damping, self.period_s, self.delay_s
         )
-
-
-def plot_z_width(
-    K: np.ndarray,
-    B: np.ndarray,
-    spectral_radius: np.ndarray,
-    passive_damping: np.ndarray,
-    *,
-    not_evaluated: Sequence[tuple[int, int]],
-    axes: Axes | None,
-    bounds: HeldBounds | None,
-    gains: tuple[float, float] | None,
-) -> Axes:
-    """Draws as `ZWidth.plot` says.
-
-    Args:
-        K: (nK,) stiffnesses, N/m or N·m/rad.
-        B: (nB,) dampings, N·s/m or N·m·s/rad.
-        spectral_radius: (nB, nK), as a `ZWidth` has it.
-        passive_damping: (nB, nK), likewise.
-        not_evaluated: Row and column of each point without a result.
-        axes: The axes to draw on. Defaults to new ones.
-        bounds: Draws the lines of theory for this damping, period and delay.
-        gains: K and B to mark.
-    """
-    if min(K.size, B.size) < 2:
-        raise ValueError(
-            "a map needs two stiffnesses and two dampings to be drawn, has"
-            f" {K.size} and {B.size}"
-        )
-    if axes is None:
-        from matplotlib import pyplot
-
-        axes = pyplot.figure().add_subplot()
-    _plot_region(K, B, spectral_radius, axes)
-    if not_evaluated:
-        rows, columns = np.array(not_evaluated).T
-        axes.plot(
-            K[columns], B[rows], "x", color="gray", clip_on=False, label="not evaluated"
-        )
-    if bounds is not None:
-        _plot_bounds(K, B, passive_damping, axes, bounds)
-    if gains is not None:
-        axes.plot(*gains, "*", ms=12, color="black", label="the scene's gains")
-    _scale_axes(K, B, axes, gains)
-    axes.set_xlabel("stiffness K, N/m or N·m/rad")
-    axes.set_ylabel("damping B, N·s/m or N·m·s/rad")
-    axes.legend()
-    return axes
 
 
 def _plot_region(
@@ -245,29 +197,50 @@ class ZWidth:
         Raises:
             ValueError: The map has only one stiffness or one damping.
         """
-        return plot_z_width(
-            self.stiffness,
-            self.damping,
-            self.spectral_radius,
-            self.passive_damping,
-            not_evaluated=list(self.reasons),
-            axes=axes,
-            bounds=bounds,
-            gains=gains,
-        )
+        K, B = self.stiffness, self.damping
+        if min(K.size, B.size) < 2:
+            raise ValueError(
+                "a map needs two stiffnesses and two dampings to be drawn, has"
+                f" {K.size} and {B.size}"
+            )
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.figure().add_subplot()
+        _plot_region(K, B, self.spectral_radius, axes)
+        if self.reasons:
+            rows, columns = np.array(list(self.reasons)).T
+            axes.plot(
+                *(K[columns], B[rows], "x"),
+                color="gray",
+                clip_on=False,
+                label="not evaluated",
+            )
+        if bounds is not None:
+            _plot_bounds(K, B, self.passive_damping, axes, bounds)
+        if gains is not None:
+            axes.plot(*gains, "*", ms=12, color="black", label="the scene's gains")
+        _scale_axes(K, B, axes, gains)
+        axes.set_xlabel("stiffness K, N/m or N·m/rad")
+        axes.set_ylabel("damping B, N·s/m or N·m·s/rad")
+        axes.legend()
+        return axes
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only, None for NaN: ready for JSON."""
-        return {
-            "stiffness": self.stiffness.tolist(),
-            "damping": self.damping.tolist(),
-            "spectral_radius": _to_lists(self.spectral_radius),
-            "passive_damping": _to_lists(self.passive_damping),
-            "not_evaluated": [
-                {"row": row, "column": column, "reason": reason}
-                for (row, column), reason in self.reasons.items()
-            ],
-        }
+        plain: dict[str, Any] = to_plain_data(
+            {
+                "stiffness": self.stiffness,
+                "damping": self.damping,
+                "spectral_radius": self.spectral_radius,
+                "passive_damping": self.passive_damping,
+                "not_evaluated": [
+                    {"row": row, "column": column, "reason": reason}
+                    for (row, column), reason in self.reasons.items()
+                ],
+            }
+        )
+        return plain
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> ZWidth:
@@ -380,7 +353,3 @@ def _check_grid(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
     if not (np.isfinite(grid).all() and (np.diff(grid) > 0.0).all()):
         raise ValueError(f"{name} must rise and be finite, is {grid.tolist()}")
     return grid
-
-
-def _to_lists(values: np.ndarray) -> list[list[float | None]]:
-    return [[None if math.isnan(v) else v for v in row] for row in values.tolist()]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
 
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.tick_log.log_format import (
     CLOCK_QUANTITIES,
     COUNTS,
@@ -109,12 +110,7 @@ class LogDiff:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns it ready for JSON; what is not finite becomes None."""
-        data = asdict(self)
-        for quantity in data["quantities"]:
-            for key in ("largest", "rms"):
-                if not np.isfinite(quantity[key]):
-                    quantity[key] = None
-        return {"is_bit_equal": self.is_bit_equal, **data}
+        return {"is_bit_equal": self.is_bit_equal, **to_plain_data(self)}
 
 
 def compare_logs(a: TickLog, b: TickLog) -> LogDiff:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.tick_log.log_format import TickLogHeader, find_changed_meshes
 from drake_haptics.tick_log.tick_log import TickLogReader
 
@@ -55,12 +55,8 @@ class LogSummary:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns it ready for JSON; what is not finite becomes None."""
-        return {
-            key: None
-            if isinstance(value, float) and not math.isfinite(value)
-            else value
-            for key, value in asdict(self).items()
-        }
+        plain: dict[str, Any] = to_plain_data(self)
+        return plain
 
 
 def summarize_log(

@@ -2,14 +2,13 @@
 
 import json
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from accuracy_samples import make_peers, make_study
 from click.testing import CliRunner
+from command_line import call
 
 from drake_haptics.cli import accuracy as command
 from drake_haptics.cli import main
@@ -17,15 +16,7 @@ from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import RunError
 
-# The installed command, beside the interpreter.
-COMMAND = Path(sys.executable).with_name("drake-haptics")
 ONLY = ["--only", "contact.tolerance_m=0.0005"]
-
-
-def run(*arguments, folder):
-    return subprocess.run(
-        [COMMAND, *map(str, arguments)], capture_output=True, text=True, cwd=folder
-    )
 
 
 @pytest.fixture
@@ -67,7 +58,7 @@ def fresh_runs(monkeypatch):
 
 def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
     arguments = ["accuracy", "sphere_pen", "--quick", *ONLY, "--store", "s.jsonl"]
-    first = run(*arguments, "--json", "-", folder=tmp_path)
+    first = call(*arguments, "--json", "-", cwd=tmp_path)
     assert first.returncode == 0, first.stderr
     # A machine that is busy makes it last long enough for a word on how far it is.
     assert re.sub(r"(errors|times): \d of \d: +\d+%\n", "", first.stderr) == ""
@@ -81,7 +72,7 @@ def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
     assert scene.errors.force_rms_N == 0.0
     assert 0.3 < row.errors.force_rms_N <= row.errors.force_max_N < 1.1
     kept = (tmp_path / "s.jsonl").read_bytes()
-    second = run(*arguments, "--json", "second.json", folder=tmp_path)
+    second = call(*arguments, "--json", "second.json", cwd=tmp_path)
     assert second.returncode == 0, second.stderr
     assert (tmp_path / "s.jsonl").read_bytes() == kept
     assert json.loads((tmp_path / "second.json").read_text()) == json.loads(
@@ -91,16 +82,16 @@ def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
 
 
 def test_a_generous_budget_gives_up_nothing_and_its_file_runs(tmp_path):
-    held = run(
+    held = call(
         *["accuracy", "sphere_pen", "--quick", "--budget-us", 1e6],
         *["--write", "held.yaml"],
-        folder=tmp_path,
+        cwd=tmp_path,
     )
     assert held.returncode == 0, held.stderr
     assert "sphere_pen as it is holds 1e+06 µs" in held.stdout
     assert "Nothing is given up." in held.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["held.yaml"]
-    ran = run("run", "held.yaml", "--headless", "--duration", 0.05, folder=tmp_path)
+    ran = call("run", "held.yaml", "--headless", "--duration", 0.05, cwd=tmp_path)
     assert ran.returncode == 0, ran.stderr
 
 

@@ -1,26 +1,16 @@
 """`drake-haptics bench`, as a user runs it."""
 
 import json
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from command_line import call
 
 from drake_haptics.cli import main
 
-PROGRAM = [str(Path(sys.executable).with_name("drake-haptics")), "bench"]
-
-
-def run(*arguments):
-    return subprocess.run(
-        [*PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=600
-    )
-
 
 def test_scenes_are_measured_and_written(tmp_path):
-    result = run("scenes", "--quick", "--json", tmp_path / "figures.json")
+    result = call("bench", "scenes", "--quick", "--json", tmp_path / "figures.json")
     assert result.returncode == 0
     # How far it is, where it takes longer than ten seconds.
     assert all(line.startswith("scenes: ") for line in result.stderr.splitlines())
@@ -34,14 +24,14 @@ def test_scenes_are_measured_and_written(tmp_path):
 
 def test_json_alone_goes_to_stdout():
     pytest.importorskip("coal")
-    result = run("python", "--quick", "--json", "-")
+    result = call("bench", "python", "--quick", "--json", "-")
     assert result.returncode == 0
     figures = json.loads(result.stdout)
     assert {p["size"] for p in figures["python"]} == {42, 2562}
 
 
 def test_an_unknown_part_is_a_wrong_call():
-    result = run("paris")
+    result = call("bench", "paris")
     assert result.returncode == 2 and "paris" in result.stderr
     assert "Traceback" not in result.stderr
 

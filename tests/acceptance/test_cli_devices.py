@@ -2,23 +2,14 @@
 
 import json
 import re
-import subprocess
-import sys
-from pathlib import Path
 
-from click.testing import CliRunner
+from command_line import call, invoke
 
-from drake_haptics.cli import main
 from drake_haptics.scene.device_preset import list_device_presets
-
-# The installed command, beside the interpreter.
-COMMAND = Path(sys.executable).with_name("drake-haptics")
 
 
 def test_the_table_has_every_device_and_its_source():
-    result = subprocess.run(
-        [COMMAND, "devices"], capture_output=True, text=True, timeout=300, check=True
-    )
+    result = call("devices", check=True)
     rows = {
         line.split()[0]: line.split() for line in result.stdout.splitlines() if line
     }
@@ -34,17 +25,17 @@ def test_the_table_has_every_device_and_its_source():
 
 
 def test_a_narrow_terminal_loses_no_figure(monkeypatch):
-    whole = CliRunner().invoke(main, ["devices"]).stdout
+    whole = invoke("devices").stdout
     monkeypatch.setenv("COLUMNS", "40")
     monkeypatch.setenv("FORCE_COLOR", "1")  # taken for a terminal
     monkeypatch.setenv("NO_COLOR", "1")
-    narrow = CliRunner().invoke(main, ["devices"]).stdout
+    narrow = invoke("devices").stdout
     plain = re.sub(r"\x1b\[[0-9;]*m", "", narrow)
     assert "\x1b" in narrow and plain.split() == whole.split()
 
 
 def test_json_has_the_figures_of_each():
-    result = CliRunner().invoke(main, ["devices", "--json", "-"])
+    result = invoke("devices", "--json", "-")
     assert result.exit_code == 0, result.output
     devices = json.loads(result.output)
     assert set(devices) == set(list_device_presets())
@@ -56,6 +47,6 @@ def test_json_has_the_figures_of_each():
 
 def test_json_goes_to_a_file_beside_the_table(tmp_path):
     path = tmp_path / "devices.json"
-    result = CliRunner().invoke(main, ["devices", "--json", str(path)])
+    result = invoke("devices", "--json", str(path))
     assert result.exit_code == 0 and "omega_6" in result.output
     assert "omega_6" in json.loads(path.read_text())

@@ -8,9 +8,9 @@ from importlib.metadata import PackageNotFoundError
 
 import pytest
 import trimesh
-from click.testing import CliRunner
+from command_line import invoke
 
-from drake_haptics.cli import main, options
+from drake_haptics.cli import options
 from drake_haptics.geometry.decomposition import approximate as coacd_backend
 from drake_haptics.geometry.decomposition import decompose as decomposition
 from drake_haptics.scene.library import list_scenes
@@ -31,10 +31,6 @@ def folder(tmp_path, monkeypatch):
     trimesh.creation.box([0.1, 0.1, 0.1]).export("block.obj")
     (tmp_path / "scene.yaml").write_text(SCENE)
     return tmp_path
-
-
-def invoke(*arguments):
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 def run_scene(*options):

@@ -13,29 +13,20 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command_line import COMMAND, call, invoke
 from driver_process import device_command, running
 
-from drake_haptics.cli import main
 from drake_haptics.tick_log.tick_log import read_tick_log
 
-COMMAND = Path(sys.executable).with_name("drake-haptics")
 LONG_S = 300.0
-
-
-def invoke(*arguments):
-    """Runs the command line in this process."""
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
     """A log that another process has written."""
     path = tmp_path_factory.mktemp("log") / "run.tick"
-    arguments = [COMMAND, "run", "rubbed_sphere", "--headless", "--duration", "1.5"]
-    answer = subprocess.run(
-        [*arguments, "--log", path], capture_output=True, text=True, timeout=LONG_S
-    )
+    arguments = ["run", "rubbed_sphere", "--headless", "--duration", "1.5"]
+    answer = call(*arguments, "--log", path)
     assert answer.returncode == 0, answer.stderr
     assert f"Wrote {path}" in answer.stdout.replace("\n", "")
     return path
@@ -218,14 +209,9 @@ def test_a_run_over_two_processes_replays_to_the_last_bit(tmp_path):
     with running(
         device_command(figures, *options, scene="rubbed_sphere"), figures
     ) as driver:
-        run = [COMMAND, "run", "rubbed_sphere", "--headless", "--duration", "1.5"]
+        run = ["run", "rubbed_sphere", "--headless", "--duration", "1.5"]
         address = f"udp://127.0.0.1:{driver.port}"
-        answer = subprocess.run(
-            [*run, "--device", address, "--log", path],
-            capture_output=True,
-            text=True,
-            timeout=LONG_S,
-        )
+        answer = call(*run, "--device", address, "--log", path)
         assert answer.returncode == 0, answer.stderr
         driver.end()
     rows = read_tick_log(path).rows

@@ -6,11 +6,8 @@ import sys
 
 import pytest
 from click.testing import CliRunner
-from headless_browser import HeadlessBrowser, find_browser
-from paper_samples import make_evaluation
 
 from drake_haptics.cli import main
-from drake_haptics.evaluation.paper.report import write_paper_page
 
 
 @pytest.fixture(scope="module")
@@ -76,34 +73,3 @@ def test_help_imports_neither_drake_nor_plots():
         "sys.exit('pydrake' in sys.modules or 'matplotlib' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
-
-
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    path = tmp_path_factory.mktemp("page") / "page.html"
-    write_paper_page(make_evaluation(), path)
-    return path
-
-
-@pytest.mark.parametrize("width", [1200, 390])
-def test_the_page_is_readable(page, width):
-    executable = find_browser()
-    if executable is None:
-        pytest.skip("no Chromium on the PATH")
-    with HeadlessBrowser(executable) as browser:
-        browser.resize(width, is_phone=width < 500)
-        browser.open(page.as_uri())
-        assert browser.evaluate(
-            "[...document.images].every(i => i.naturalWidth > 900 && i.width >= 720)"
-        )
-        # Nothing reaches beyond the window's side, but for tables that scroll.
-        assert browser.evaluate(
-            "document.documentElement.scrollWidth <= window.innerWidth"
-        )
-        assert browser.evaluate("document.querySelectorAll('table').length") == 7
-        assert browser.evaluate(
-            "[...document.querySelectorAll('.mark')].every(m => m.scrollWidth <="
-            " m.clientWidth && ['agrees', 'better', 'differs', 'not measured']"
-            ".includes(m.innerText))"
-        )
-        assert browser.errors == []

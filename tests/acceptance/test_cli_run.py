@@ -6,22 +6,18 @@ import re
 import signal
 import socket
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import websocket
-from click.testing import CliRunner
+from command_line import COMMAND, call, invoke
 
-from drake_haptics.cli import main, run_session
+from drake_haptics.cli import run_session
 from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.scene.library import list_scenes
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
 
-# The installed command, beside the interpreter.
-COMMAND = Path(sys.executable).with_name("drake-haptics")
 SCENES = [
     "can_box",
     "cup_spoon",
@@ -32,11 +28,6 @@ SCENES = [
     "sphere_pen",
     "torus_peg",
 ]
-
-
-def invoke(*arguments):
-    """Runs the command line in this process."""
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
 def run_json(folder, *arguments):
@@ -136,10 +127,7 @@ def test_scale_is_applied(tmp_path):
 
 
 def test_explain_says_what_is_there_and_why_and_what_it_takes():
-    process = subprocess.run(
-        [COMMAND, "run", "rubbed_sphere", "--explain", "--json", "-"],
-        capture_output=True, text=True,
-    )  # fmt: skip
+    process = call("run", "rubbed_sphere", "--explain", "--json", "-")
     assert process.returncode == 0, process.stderr
     figures = json.loads(process.stdout)
     # Without a duration it is over by itself, and it needs no page.
@@ -188,11 +176,8 @@ def test_a_coupling_that_breaks_a_bound_is_warned_of_in_a_line(tmp_path):
 
 
 def test_json_to_stdout_is_alone():
-    process = subprocess.run(
-        [COMMAND, "run", "sphere_pen", "--headless",
-         "--duration", "0.1", "--json", "-"],
-        capture_output=True, text=True,
-    )  # fmt: skip
+    options = ["--headless", "--duration", "0.1", "--json", "-"]
+    process = call("run", "sphere_pen", *options)
     assert process.returncode == 0, process.stderr
     assert json.loads(process.stdout)["ticks"] == 100
 

@@ -2,22 +2,18 @@
 
 import json
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from command_line import call
 from held_samples import analyze_sample, make_limits
 
 from drake_haptics.analysis import scene_stability
 from drake_haptics.cli import main
 from drake_haptics.cli import stability as command
 from drake_haptics.simulation.run import RunError
-
-# The installed command, beside the interpreter.
-COMMAND = Path(sys.executable).with_name("drake-haptics")
 
 
 @pytest.fixture
@@ -43,10 +39,9 @@ def sample(monkeypatch):
 
 
 def test_a_scene_from_end_to_end(tmp_path):
-    process = subprocess.run(
-        [COMMAND, "stability", "sphere_pen", "--map", "0", "--json", "-"],
-        capture_output=True, text=True, cwd=tmp_path,
-    )  # fmt: skip
+    process = call(
+        *("stability", "sphere_pen", "--map", "0", "--json", "-"), cwd=tmp_path
+    )
     assert process.returncode == 0, process.stderr
     # No more than how far it is, if it takes long.
     lines = process.stderr.splitlines()

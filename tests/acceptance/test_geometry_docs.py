@@ -4,32 +4,28 @@ import re
 from pathlib import Path
 
 import pytest
+from markdown_page import find_blocks, run_snippets
 
 import drake_haptics
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "geometry.md").read_text(encoding="utf-8")
 NAMES_OF_OTHERS = ("SignedDistancePair", "RigidTransform", "ValueError")
-SNIPPETS = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 
 @pytest.fixture(scope="module")
 def printed():
-    """What each snippet prints, run one after the other as a reader would."""
-    lines = []
-    names = {"print": lambda *values: lines[-1].append(values)}
+    """What each snippet prints."""
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(ROOT)
-        for number, snippet in enumerate(SNIPPETS):
-            lines.append([])
-            exec(compile(snippet, f"geometry.md, snippet {number}", "exec"), names)
-    return [values for (values,) in lines]
+        return [values for (values,) in run_snippets(TEXT)]
 
 
 def test_each_snippet_is_ten_lines_or_less():
-    assert len(SNIPPETS) == 5
-    for snippet in SNIPPETS:
-        assert len([line for line in snippet.splitlines() if line.strip()]) <= 10
+    snippets = [block for block in find_blocks(TEXT) if block.language == "python"]
+    assert len(snippets) == 5
+    for snippet in snippets:
+        assert len([line for line in snippet.text.splitlines() if line.strip()]) <= 10
 
 
 def test_a_pair(printed):

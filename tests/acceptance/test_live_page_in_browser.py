@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 import pytest
-from headless_browser import HeadlessBrowser, find_browser
+from headless_browser import HeadlessBrowser
 from pydrake.geometry import Rgba
 from visualizer_rig import MAX_TORQUE_NM, X_WH, make_context, make_mesh, make_visualizer
 
@@ -22,11 +22,8 @@ SCALE = """(() => {
 
 
 @pytest.mark.parametrize("early", [True, False])
-def test_arrows_keep_their_size_however_they_move(early):
+def test_arrows_keep_their_size_however_they_move(chromium, early):
     """Whether the page was open from the start or came to a loop that runs."""
-    executable = find_browser()
-    if executable is None:
-        pytest.skip("no Chromium on the PATH")
     meshcat = start_meshcat()
     pool = ArrowPool(meshcat, "/arrows", 1, [Rgba(1, 0, 0)])
 
@@ -34,7 +31,7 @@ def test_arrows_keep_their_size_however_they_move(early):
         vector = np.array([[0, 0, LENGTH_M]])
         list(pool.draw([0], np.array([[x, 0, 0]]), vector, [0], 0.0))
 
-    with HeadlessBrowser(executable) as browser:
+    with HeadlessBrowser(chromium) as browser:
         if early:
             browser.open(meshcat.web_url())
             browser.wait_for("typeof viewer != 'undefined'")
@@ -72,16 +69,13 @@ def draw_until(browser, visualizer, tau_W, expression):
         visualizer.ForcedPublish(make_context(visualizer, tau_H_W=tau_W))
 
 
-def test_the_torques_arrow_is_along_its_axis_and_as_long_as_its_share():
-    executable = find_browser()
-    if executable is None:
-        pytest.skip("no Chromium on the PATH")
+def test_the_torques_arrow_is_along_its_axis_and_as_long_as_its_share(chromium):
     meshcat = start_meshcat()
     visualizer = make_visualizer(meshcat)
     size_m = np.linalg.norm(np.ptp(make_mesh().vertices, axis=0))
     # three.js's world has y up: its axes are Drake's x, z, -y.
     R_TW = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
-    with HeadlessBrowser(executable) as browser:
+    with HeadlessBrowser(chromium) as browser:
         browser.open(meshcat.web_url())
         browser.wait_for("typeof viewer != 'undefined'")
         for share, axis_W in [(0.5, [0.6, 0, -0.8]), (1.0, [0, -1.0, 0])]:

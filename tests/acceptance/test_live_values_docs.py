@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from markdown_page import run_snippets
 
 from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems.contact.contact_clustering import ContactClustering
@@ -13,18 +14,12 @@ from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 PAGE = Path(__file__).parents[2] / "docs" / "compose.md"
 TEXT = PAGE.read_text("utf-8").partition("## Change gains")[2]
-SNIPPETS = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 
 @pytest.fixture(scope="module")
 def printed():
-    """What each snippet prints, run one after the other as a reader would."""
-    lines = []
-    names = {"print": lambda value: lines[-1].append(value)}
-    for number, snippet in enumerate(SNIPPETS):
-        lines.append([])
-        exec(compile(snippet, f"compose.md, snippet {number}", "exec"), names)
-    return lines
+    """What each snippet prints."""
+    return [[value for (value,) in values] for values in run_snippets(TEXT)]
 
 
 def test_each_snippet_prints(printed):

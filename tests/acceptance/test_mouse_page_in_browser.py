@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from headless_browser import HeadlessBrowser, find_browser
+from headless_browser import HeadlessBrowser
 from pydrake.geometry import Box, Rgba, Sphere
 from pydrake.math import RigidTransform, RotationMatrix
 
@@ -120,11 +120,8 @@ class Hand:
 
 
 @pytest.fixture(scope="module")
-def hand():
+def hand(chromium):
     """The page, open, of a camera that looks askance."""
-    executable = find_browser()
-    if executable is None:
-        pytest.skip("no Chromium on the PATH")
     meshcat = start_meshcat()
     meshcat.SetObject("/box", Box(0.1, 0.1, 0.1), Rgba(0.2, 0.7, 0.3))
     meshcat.SetCameraPose(CAMERA_M, np.zeros(3))
@@ -137,7 +134,7 @@ def hand():
             max_force_N=6.0,
             max_torque_Nm=0.2,
         ) as device,
-        HeadlessBrowser(executable) as browser,
+        HeadlessBrowser(chromium) as browser,
     ):
         browser.open(device.url)
         browser.evaluate(COUNT)

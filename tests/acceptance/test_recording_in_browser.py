@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from headless_browser import HeadlessBrowser, find_browser
+from headless_browser import HeadlessBrowser
 
 from drake_haptics.cli import main
 
@@ -12,11 +12,8 @@ TREE = "viewer.scene_tree.find(['haptics', '{}'])"
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory):
+def page(chromium, tmp_path_factory):
     """Two seconds of the cup and the spoon, open in a browser, paused."""
-    executable = find_browser()
-    if executable is None:
-        pytest.skip("no Chromium on the PATH")
     file = tmp_path_factory.mktemp("recording") / "out.html"
     result = CliRunner().invoke(
         main,
@@ -24,7 +21,7 @@ def page(tmp_path_factory):
          "--record", str(file)],
     )  # fmt: skip
     assert result.exit_code == 0, result.output
-    with HeadlessBrowser(executable) as browser:
+    with HeadlessBrowser(chromium) as browser:
         browser.open(file.as_uri())
         browser.wait_for("typeof viewer != 'undefined' && viewer.animator.duration > 0")
         browser.evaluate("viewer.animator.pause()")

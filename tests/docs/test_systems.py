@@ -141,6 +141,26 @@ def test_the_ports_are_those_of_the_docstring(kind, systems):
         assert not find_differences(block.output_ports, [p.get_name() for p in outputs])
 
 
+# They hold what they say for a tick, so that no loop is algebraic.
+SAMPLED = {
+    *("ForceDelay", "HapticCommandReceiver", "HapticDevice", "HapticTool"),
+    *("JointEncoder", "PoseSampler", "RenderedForceHold"),
+}
+STATELESS = {
+    *("AppliedWrenches", "BodyMotions", "ContactClustering", "ContactExtrapolator"),
+    *("ContactQuery", "ForceShading", "FrictionReaction", "PenaltyForce"),
+    *("PreContactBraking", "ToolGravity", "VirtualCoupling"),
+}
+
+
+def test_systems_with_a_tick_of_delay_and_systems_without_state(systems):
+    kinds = {type(system).__name__.partition("_")[0]: system for system in systems}
+    for name in SAMPLED:
+        assert not kinds[name].HasAnyDirectFeedthrough(), name
+    for name in STATELESS:
+        assert kinds[name].CreateDefaultContext().num_total_states() == 0, name
+
+
 def test_every_system_is_on_the_page_of_all_systems():
     listed = list_system_modules(DOCS)
     assert len(listed) == len(set(listed))

@@ -26,7 +26,7 @@ MACHINE = {
 
 def make_times(median_us: float) -> TickTimes:
     """Times whose p99 is twice the median, and p99.9 three times."""
-    return TickTimes(median_us, 2.0 * median_us, 3.0 * median_us)
+    return TickTimes(1000, median_us, 2.0 * median_us, 3.0 * median_us)
 
 
 def make_errors(force_rms_N: float, stiffness: float | None = 3e4) -> Errors:

@@ -6,7 +6,7 @@ from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures
 from drake_haptics.evaluation.benchmark.python_pairs import PythonFigures
 from drake_haptics.evaluation.benchmark.scene_runs import SceneFigures
-from drake_haptics.evaluation.measuring.timing import Times
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 
 def pair(library: str, size: int, median: float, kind: str = "ball") -> PairFigures:
@@ -15,8 +15,8 @@ def pair(library: str, size: int, median: float, kind: str = "ball") -> PairFigu
         size=size,
         library=library,
         ours=library == "ours",
-        apart=Times(10, median, 2 * median),
-        in_depth=Times(10, 3 * median, 4 * median),
+        apart=TickTimes(10, median, 2 * median, 3 * median),
+        in_depth=TickTimes(10, 3 * median, 4 * median, 5 * median),
         max_relative_error=1e-12,
         wrong_share=0.0,
         exact_depth_share=1.0,
@@ -25,7 +25,7 @@ def pair(library: str, size: int, median: float, kind: str = "ball") -> PairFigu
     )
 
 
-def scene(library: str, near: Times) -> SceneFigures:
+def scene(library: str, near: TickTimes) -> SceneFigures:
     return SceneFigures("cup", library, 840, 55, 75, 1, near, near, 3.0, 7, 1e-3)
 
 
@@ -46,7 +46,7 @@ EVERYTHING = BenchFigures(
     pairs=FIGURES,
     python=[PythonFigures("ball", 42, 0.5, 2.0)],
     scenes=[
-        scene("drake_haptics", Times(5, 2.0, 6.0)),
-        scene("coal, dynamic AABB tree", Times(5, 20.0, 30.0)),
+        scene("drake_haptics", TickTimes(5, 2.0, 6.0, 6.0)),
+        scene("coal, dynamic AABB tree", TickTimes(5, 20.0, 30.0, 30.0)),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Any
 
 PROGRAM = "drake-haptics"
 
@@ -35,6 +36,21 @@ def find_blocks(text: str) -> list[Block]:
         Block(match[1], match[2], text[: match.start()].count("\n") + 1)
         for match in re.finditer(r"(?ms)^```(\w*)\n(.*?)^```$", text)
     ]
+
+
+def run_snippets(text: str) -> list[list[tuple[Any, ...]]]:
+    """Runs the Python blocks of a page one after the other, as a reader would.
+
+    Returns:
+        What each block prints: the arguments of each call of `print`.
+    """
+    printed: list[list[tuple[Any, ...]]] = []
+    names = {"print": lambda *values: printed[-1].append(values)}
+    for block in find_blocks(text):
+        if block.language == "python":
+            printed.append([])
+            exec(compile(block.text, f"line {block.line} of the page", "exec"), names)
+    return printed
 
 
 def find_spans(text: str) -> list[str]:

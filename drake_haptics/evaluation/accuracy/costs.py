@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import cast
 
@@ -66,9 +66,9 @@ def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
     """
     haptic = cached_build(scene)
     pace = RealTimePacer(haptic.period_s)
-    times = run(haptic, duration_s, pace=pace).to_dict()["tick_us"]
-    assert isinstance(times, dict)
-    return TickTimes(times["median"], times["p99"], times["p99_9"])
+    done = run(haptic, duration_s, pace=pace)
+    times = done.tick_us
+    return TickTimes(done.ticks, times.median, times.p99, times.p99_9)
 
 
 def combine(repeats: Sequence[TickTimes]) -> TickTimes:
@@ -77,9 +77,8 @@ def combine(repeats: Sequence[TickTimes]) -> TickTimes:
     Each run has its own percentiles, as a user's has, interruptions by the system
     included; the median drops a run that something else disturbed.
     """
-    table = np.array([[r.median_us, r.p99_us, r.p99_9_us] for r in repeats])
-    median, p99, p99_9 = np.median(table, axis=0).tolist()
-    return TickTimes(median, p99, p99_9)
+    ticks, *times_us = np.median([astuple(r) for r in repeats], axis=0).tolist()
+    return TickTimes(int(ticks), *times_us)
 
 
 def make_native_part(haptic: HapticDiagram) -> NativePart:

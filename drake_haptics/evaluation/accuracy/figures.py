@@ -8,12 +8,12 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.measuring.plain_data import (
+from drake_haptics.evaluation.measuring.timing import TickTimes
+from drake_haptics.report.plain_data import (
     name_number,
     read_figures,
-    replace_numbers,
+    to_plain_data,
 )
-from drake_haptics.evaluation.measuring.timing import TickTimes
 
 # Why a stiffness is not known that nobody asked for.
 NOT_SOUGHT = "not sought"
@@ -148,7 +148,7 @@ class AccuracyStudy:
         Infinite numbers are the text "infinite", and NaN is "none"; a null is a figure
         that was not sought.
         """
-        data: dict[str, Any] = replace_numbers(self.to_dict(), name_number)
+        data: dict[str, Any] = to_plain_data(self, name_number)
         return data
 
     @staticmethod

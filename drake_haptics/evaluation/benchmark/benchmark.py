@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -42,9 +41,9 @@ from drake_haptics.evaluation.benchmark.scene_runs import (
 )
 from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
-from drake_haptics.evaluation.measuring.plain_data import read_figures, replace_numbers
 from drake_haptics.evaluation.measuring.timing import describe_machine, name_machine
 from drake_haptics.report.page import Table
+from drake_haptics.report.plain_data import read_figures, to_plain_data
 
 PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.
@@ -110,9 +109,7 @@ class BenchFigures:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns everything as plain data; None stands for NaN."""
-        plain: dict[str, Any] = replace_numbers(
-            asdict(self), lambda number: None if math.isnan(number) else number
-        )
+        plain: dict[str, Any] = to_plain_data(self)
         return plain
 
     @staticmethod

@@ -13,7 +13,7 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairQuery,
 )
 from drake_haptics.evaluation.benchmark.pairs import PairShape, Press, make_presses
-from drake_haptics.evaluation.measuring.timing import Times, take_turns, typical
+from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
 
 # Relative errors are of frames whose distance is at least this, m.
 _JUDGED_M = 1e-6
@@ -95,8 +95,8 @@ class PairFigures:
     size: int
     library: str
     ours: bool
-    apart: Times
-    in_depth: Times
+    apart: TickTimes
+    in_depth: TickTimes
     max_relative_error: float
     wrong_share: float
     exact_depth_share: float
@@ -172,8 +172,8 @@ def _figures(
         size=pair.size,
         library=library.name,
         ours=library.ours,
-        apart=Times.of(time_s[~deep]),
-        in_depth=Times.of(time_s[deep]),
+        apart=TickTimes.of(time_s[~deep]),
+        in_depth=TickTimes.of(time_s[deep]),
         max_relative_error=float(error.max(initial=0.0)),
         wrong_share=float((error > _WRONG).mean()) if len(error) else 0.0,
         exact_depth_share=float(right[deep].mean()) if deep.any() else 1.0,

@@ -111,12 +111,12 @@ def error_table(figures: Sequence[PairFigures]) -> Table:
 
     def row(library: str) -> tuple[str, ...]:
         own = [f for f in figures if f.library == library]
-        frames = sum(f.apart.frames + f.in_depth.frames for f in own)
-        deep = sum(f.in_depth.frames for f in own)
+        frames = sum(f.apart.ticks + f.in_depth.ticks for f in own)
+        deep = sum(f.in_depth.ticks for f in own)
         wrong = sum(
-            f.wrong_share * (f.apart.frames + f.in_depth.frames) for f in own
+            f.wrong_share * (f.apart.ticks + f.in_depth.ticks) for f in own
         ) / max(frames, 1)
-        exact = sum(f.exact_depth_share * f.in_depth.frames for f in own) / max(deep, 1)
+        exact = sum(f.exact_depth_share * f.in_depth.ticks for f in own) / max(deep, 1)
         return (
             library,
             f"{max(f.max_relative_error for f in own):.0e}",

@@ -25,7 +25,7 @@ from drake_haptics.evaluation.measuring.native_build import (
     load_coal_native,
 )
 from drake_haptics.evaluation.measuring.timing import (
-    Times,
+    TickTimes,
     clock_interval,
     take_turns,
     typical,
@@ -146,8 +146,8 @@ class SceneFigures:
     tool_pieces: int
     object_pieces: int
     objects: int
-    near: Times
-    all_ticks: Times
+    near: TickTimes
+    all_ticks: TickTimes
     median_contacts: float
     max_contacts: int
     deepest_m: float
@@ -215,8 +215,8 @@ def _figures(
         tool_pieces=tool_pieces,
         object_pieces=object_pieces,
         objects=len(problem.objects),
-        near=Times.of(seconds[near]),
-        all_ticks=Times.of(seconds),
+        near=TickTimes.of(seconds[near]),
+        all_ticks=TickTimes.of(seconds),
         median_contacts=float(np.median(contacts[near])) if near.any() else 0.0,
         max_contacts=int(contacts.max(initial=0)),
         deepest_m=float(max(0.0, -nearest_m.min(initial=0.0))),

@@ -9,7 +9,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
-from pydrake.geometry import AddContactMaterial, Convex, ProximityProperties
+from pydrake.common import MemoryFile
+from pydrake.geometry import (
+    AddContactMaterial,
+    Convex,
+    InMemoryMesh,
+    Mesh,
+    ProximityProperties,
+)
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
@@ -44,6 +51,14 @@ def register_pieces(
         name = f"piece_{len(plant.GetCollisionGeometriesForBody(body))}"
         shape = Convex(points=piece.vertices.T, label=name)
         plant.RegisterCollisionGeometry(body, X_BP, shape, name, surface)
+
+
+def to_drake_mesh(part: Decomposition) -> Mesh:
+    """Returns the mesh that was cut as Drake's, without a file."""
+    lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in part.mesh.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in (part.mesh.triangles + 1).tolist()]
+    file = MemoryFile("\n".join(lines) + "\n", ".obj", "mesh")
+    return Mesh(mesh_data=InMemoryMesh(mesh_file=file))
 
 
 def make_surface(

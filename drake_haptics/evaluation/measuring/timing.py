@@ -63,11 +63,13 @@ class TickTimes:
     """Median and percentiles of the times of ticks.
 
     Attributes:
+        ticks: Number of the ticks.
         median_us: Median, µs.
         p99_us: 99 of 100 took less, µs.
         p99_9_us: 999 of 1000 took less, µs.
     """
 
+    ticks: int
     median_us: float
     p99_us: float
     p99_9_us: float
@@ -75,27 +77,12 @@ class TickTimes:
     @staticmethod
     def of(seconds: np.ndarray) -> TickTimes:
         """Sums up (n,) times of ticks, s; NaN where there are none."""
-        return TickTimes(*_calc_percentiles_us(seconds, [50, 99, 99.9]))
-
-
-@dataclass(frozen=True)
-class Times:
-    """Times of many frames of one kind.
-
-    Attributes:
-        frames: Number of the frames.
-        median_us: Half of the frames took less, µs.
-        p99_us: One frame in a hundred took more, µs.
-    """
-
-    frames: int
-    median_us: float
-    p99_us: float
-
-    @staticmethod
-    def of(seconds: np.ndarray) -> Times:
-        """Sums up (n,) times of frames, s; NaN where there are none."""
-        return Times(len(seconds), *_calc_percentiles_us(seconds, [50, 99]))
+        percentiles_us = (
+            1e6 * np.percentile(seconds, [50, 99, 99.9])
+            if len(seconds)
+            else np.full(3, np.nan)
+        )
+        return TickTimes(len(seconds), *percentiles_us.tolist())
 
 
 def typical(seconds: np.ndarray) -> np.ndarray:
@@ -113,13 +100,6 @@ def typical(seconds: np.ndarray) -> np.ndarray:
     ordered = np.sort(seconds, axis=0)
     edge = (len(ordered) + 1) // 4
     return ordered[edge : len(ordered) - edge].mean(axis=0)
-
-
-def _calc_percentiles_us(seconds: np.ndarray, percents: list[float]) -> list[float]:
-    if len(seconds) == 0:
-        return [np.nan] * len(percents)
-    percentiles: list[float] = (1e6 * np.percentile(seconds, percents)).tolist()
-    return percentiles
 
 
 def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:

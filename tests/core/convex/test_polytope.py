@@ -123,21 +123,6 @@ def test_a_fine_disc_keeps_its_rim():
     assert len(polytope(rim).vertices) == 10_000
 
 
-def test_collinear_points_are_a_segment():
-    ends = np.array([[1.0, 2, 3], [-2, 0, 1]])
-    shares = np.linspace(0, 1, 11)[:, None]
-    piece = polytope(ends[0] * (1 - shares) + ends[1] * shares)
-    assert piece.dimension == 1 and piece.facets == []
-    np.testing.assert_array_equal(piece.vertices, ends)
-    np.testing.assert_array_equal(piece.edges, [[0, 1]])
-
-
-def test_one_point_often_is_a_point():
-    piece = polytope([[1, 2, 3]] * 5)
-    assert piece.dimension == 0 and len(piece.vertices) == 1
-    assert piece.radius == 0 and len(piece.edges) == 0
-
-
 def test_duplicates_change_nothing():
     points = np.random.default_rng(5).normal(size=(40, 3))
     once, often = polytope(points), polytope(np.repeat(points, 3, axis=0))
@@ -212,10 +197,6 @@ def test_a_piece_of_a_surface_is_not_pickled_without_it():
     ).pieces
     with pytest.raises(TypeError, match="save the Decomposition"):
         pickle.dumps(pieces[0])
-
-
-def test_a_polytope_says_what_it_is():
-    assert repr(polytope(grid(3))) == "ConvexPolytope(8 vertices, 12 edges, 6 facets)"
 
 
 def test_wrong_shapes_and_indices_are_refused():

@@ -451,13 +451,6 @@ def test_bad_indices_are_refused(index):
         _core.adopt_convex_pieces(V, F, [V], 1e-6)
 
 
-@pytest.mark.parametrize("labels", [[-1] * 20, [1] * 20, [0] * 19, [2**30] * 20])
-def test_bad_labels_are_refused(labels):
-    V, F = arrays(*l_prism())
-    with pytest.raises(ValueError):
-        _core.assemble_surface_pieces(V, F, np.array(labels, dtype=np.int32))
-
-
 def test_bad_values_are_refused():
     V, F = arrays(*l_prism())
     V = V.copy()

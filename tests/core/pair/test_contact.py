@@ -142,15 +142,3 @@ def test_answers_cannot_be_changed_and_outlive_their_source() -> None:
     del contact, trajectory, pair
     np.testing.assert_allclose(normal, [0, 0, 1])
     np.testing.assert_allclose(distance, [0.5] * 3)
-
-
-def test_a_contact_says_what_it_is() -> None:
-    contact = ConvexPair(CUBE, CUBE).query(at(0.25, 0.5, 2.5), np.eye(4))
-    assert repr(contact).startswith("Contact(0.5 m, NEAR, normal [0, 0, 1], ")
-    contacts = SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], 0.1).query(
-        pose([0, 0, 1.0625])
-    )
-    assert repr(contacts) == "ContactSet(1 contact, least distance 0.0625 m)"
-    nothing = SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], 0.1).query(pose([0, 0, 9]))
-    assert repr(nothing) == "ContactSet(no contacts)"
-    assert nothing.feature_A.shape == (0, 2) and nothing.p_WCa.shape == (0, 3)

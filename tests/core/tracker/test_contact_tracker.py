@@ -84,37 +84,6 @@ def swarm(rng: np.random.Generator, count: int) -> _core.ConvexPieces:
     return pieces_of(trimesh.util.concatenate(bodies))
 
 
-def test_the_trees_miss_no_pair_and_every_pair_gets_its_own_answer() -> None:
-    rng = np.random.default_rng(1)
-    A, B = swarm(rng, 40), swarm(rng, 40)
-    assert len(A.pieces) == len(B.pieces) == 40
-    tracker = _core.SceneTracker(A, [B], T)
-    deep = near = 0
-    for _ in range(5):
-        q_WA = random_pose(rng, 0.02)
-        X_WA = np.eye(4)
-        X_WA[:3, :3] = Rotation.from_quat(np.roll(q_WA[:4], -1)).as_matrix()
-        X_WA[:3, 3] = q_WA[4:]
-        tracker.reset()
-        contacts = tracker.query(q_WA)
-        found = {
-            (i, j): d
-            for i, j, d in zip(
-                contacts.piece_A, contacts.piece_B, contacts.distance, strict=True
-            )
-        }
-        for i, P in enumerate(A.pieces):
-            for j, Q in enumerate(B.pieces):
-                truth = _core.ConvexPair(P, Q).query(X_WA, np.eye(4)).distance
-                if truth > T:
-                    assert (i, j) not in found
-                else:
-                    deep += truth < 0
-                    near += truth >= 0
-                    assert found[i, j] == pytest.approx(truth, abs=1e-12)
-    assert min(deep, near) > 20
-
-
 def test_warm_and_cold_answers_agree_while_apart() -> None:
     A, B = pieces_of(ring()), pieces_of(ring())
     warm = _core.SceneTracker(A, [B], T)
@@ -235,21 +204,6 @@ def test_faces_that_are_pressed_flush_meet_at_any_tolerance(tolerance: float) ->
             assert contacts.distance.min() == pytest.approx(gap, abs=1e-15)
 
 
-def test_objects_are_posed_and_named_by_their_index() -> None:
-    tracker = _core.SceneTracker(
-        spike([0, 0, 0]), [box([0.1, 0.1, 0.1]), box([0.1, 0.1, 0.1])], T
-    )
-    tracker.set_object_pose(0, pose([0, 0, -0.05]))
-    tracker.set_object_pose(1, pose([5, 0, 0]))
-    contacts = tracker.query(pose([0, 0, 1e-3]))
-    assert set(contacts.object_index) == {0}
-    contacts = tracker.query(pose([5, 0, 0.051]))
-    assert set(contacts.object_index) == {1}
-    assert contacts.distance.min() == pytest.approx(1e-3, abs=1e-14)
-    with pytest.raises(IndexError):
-        tracker.set_object_pose(2, IDENTITY)
-
-
 def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
     tracker = _core.SceneTracker(spike([0, 0, 0]), [box([1, 1, 1])], T)
     q = pose([0, 0, 0.501])
@@ -262,12 +216,6 @@ def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
     after = tracker.query(q)
     np.testing.assert_array_equal(before.distance, after.distance)
     np.testing.assert_array_equal(twin.query(q).distance, after.distance)
-
-
-@pytest.mark.parametrize("bad", [-1e-3, np.nan, np.inf])
-def test_the_tolerance_is_checked(bad: float) -> None:
-    with pytest.raises(ValueError, match="tolerance"):
-        _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], bad)
 
 
 def test_a_query_up_to_less_gives_the_nearer_contacts_and_spoils_no_later_one() -> None:

@@ -106,13 +106,3 @@ def test_the_tolerance_is_a_length(bad: object) -> None:
         ContactTracker(CUBE, CUBE, bad)
     with pytest.raises(ValueError, match=r"^tolerance must be "):
         SceneTracker(CUBE, [CUBE], bad)
-
-
-def test_trackers_say_what_they_are() -> None:
-    assert (
-        repr(ContactTracker(CUBE, CUBE, 0.002)) == "ContactTracker(tolerance=0.002 m)"
-    )
-    scene = SceneTracker(CUBE, [CUBE, PRISM], 0.002)
-    assert repr(scene) == "SceneTracker(2 objects, tolerance=0.002 m)"
-    trajectory = scene.query_trajectory(np.eye(4)[None])
-    assert repr(trajectory).startswith("ContactTrajectory(1 pose, ")

@@ -139,15 +139,6 @@ def test_a_host_that_stops_finds_a_fault_that_it_must_leave():
     assert np.diff(shown).max() <= 0.05 * MAX_FORCE_N
 
 
-def test_a_wrench_that_is_not_finite_is_a_fault():
-    loop = Loop()
-    loop.press(400, push_N=1.0)
-    loop.tick(math.nan)
-    loop.press(5)
-    assert loop.state == (GateState.FAULT, Fault.NOT_FINITE)
-    assert not loop.device.read().F_Ho_B.any()
-
-
 def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it():
     loop = Loop()
     loop.press(400, push_N=1.0)

@@ -115,10 +115,8 @@ def test_nothing_is_measured_where_the_scene_holds(scene):
     assert choice.is_scene and choice.holds and choice.scene is scene
     assert len(choice.trial.p99_us) == 5
     words = describe_outcome(choice, "a_scene")
-    assert words == (
-        "a_scene as it is holds 300 µs: p99 200 µs a tick, the median of 5 fresh runs"
-        " (worst 200). Nothing is given up."
-    )
+    assert words.startswith("a_scene as it is holds 300 µs: p99 200 µs a tick")
+    assert "5 fresh runs (worst 200)" in words
     assert describe_sacrifices(choice, scene) == []
 
 
@@ -201,17 +199,14 @@ def test_a_budget_is_kept_within_ten_percent(p99_us, holds):
 
 def test_what_is_given_up_is_said_from_what_to_what(scene):
     choice = choose(scene, 79.0, Machine())
-    assert describe_sacrifices(choice, scene) == [
-        "contact.tolerance_m from 0.001 to 0.0005 (0.5 mm): the force differs by 0.020"
-        " N rms, 0.080 N at most; a difference of model: how far from a surface it"
-        " begins to push",
-        "tool.decomposition from surface to hull (one hull): the force differs by 0.300"
-        " N rms, 1.200 N at most",
-        "an EFFECT that the scene names, no shading: effects.shading from"
-        ' {"crease_angle_deg": 30.0} to none: the force differs by 0.010 N rms, 0.040 N'
-        " at most",
-        "all together: the force differs by 0.250 N rms, 1.000 N at most",
-    ]
+    tolerance, hull, shading, together = describe_sacrifices(choice, scene)
+    assert "contact.tolerance_m from 0.001 to 0.0005 (0.5 mm)" in tolerance
+    assert "0.020 N rms, 0.080 N at most; a difference of model" in tolerance
+    assert "tool.decomposition from surface to hull (one hull)" in hull
+    assert hull.endswith("0.300 N rms, 1.200 N at most")
+    assert "an EFFECT that the scene names" in shading
+    assert 'effects.shading from {"crease_angle_deg": 30.0} to none' in shading
+    assert together.endswith("0.250 N rms, 1.000 N at most")
     head, *lines = describe_file(choice, scene, "a_scene")
     assert head.startswith("a_scene holds 79 µs with what follows: p99 30.0 µs")
     assert len(lines) == 4

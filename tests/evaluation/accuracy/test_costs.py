@@ -22,8 +22,12 @@ from drake_haptics.scene.schema import BrakingParameters, Material
 
 
 def test_of_several_runs_each_figure_is_the_middle():
-    repeats = [TickTimes(9, 20, 31), TickTimes(8, 900, 990), TickTimes(1, 10, 30)]
-    assert combine(repeats) == TickTimes(8, 20, 31)
+    repeats = [
+        TickTimes(5, 9, 20, 31),
+        TickTimes(5, 8, 900, 990),
+        TickTimes(5, 1, 10, 30),
+    ]
+    assert combine(repeats) == TickTimes(5, 8, 20, 31)
 
 
 def test_turns_begin_each_time_at_another_setting():

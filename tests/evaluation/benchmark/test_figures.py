@@ -24,7 +24,7 @@ from drake_haptics.evaluation.benchmark.pair_tables import (
     time_table,
 )
 from drake_haptics.evaluation.measuring import timing
-from drake_haptics.evaluation.measuring.timing import CallTimer, Times, typical
+from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
 
 
 def test_a_library_that_is_alone_is_named_once_in_the_heads() -> None:
@@ -61,10 +61,10 @@ def test_typical_times_leave_interruptions_out() -> None:
 
 
 def test_times_are_summed_up_in_microseconds() -> None:
-    times = Times.of(np.arange(101) * 1e-6)
-    assert (times.frames, times.median_us) == (101, pytest.approx(50))
+    times = TickTimes.of(np.arange(101) * 1e-6)
+    assert (times.ticks, times.median_us) == (101, pytest.approx(50))
     assert times.p99_us == pytest.approx(99)
-    assert Times.of(np.array([])).frames == 0
+    assert TickTimes.of(np.array([])).ticks == 0
 
 
 def test_a_call_is_charged_less_what_a_trivial_one_costs(monkeypatch) -> None:
@@ -82,7 +82,7 @@ def test_a_call_is_charged_less_what_a_trivial_one_costs(monkeypatch) -> None:
 
 
 def test_figures_survive_json() -> None:
-    empty = scene("drake_haptics", Times.of(np.array([])))
+    empty = scene("drake_haptics", TickTimes.of(np.array([])))
     figures = BenchFigures(**{**vars(EVERYTHING), "scenes": [empty]})
     text = json.dumps(figures.to_dict(), allow_nan=False)
     back = BenchFigures.from_dict(json.loads(text))

@@ -29,7 +29,6 @@ from drake_haptics.evaluation.benchmark.loop.figures import (
     SCENE,
     STOCK,
     LoopFigures,
-    LoopTimes,
     loop_tables,
 )
 from drake_haptics.evaluation.benchmark.loop.problem import (
@@ -40,6 +39,7 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
 )
 from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
 from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 # The spoon comes in and begins to scrape.
 _SECONDS = 1.2
@@ -166,7 +166,7 @@ def test_figures_are_those_of_the_ticks_that_all_touch_in(
 
 
 def _figures(loop: str, median_us: float) -> LoopFigures:
-    times = LoopTimes(9, median_us, 2 * median_us, math.nan)
+    times = TickTimes(9, median_us, 2 * median_us, math.nan)
     return LoopFigures("cup", loop, times, times, 2.0, 7, 1e-4, 1.5, 2.5, 3e-4)
 
 
@@ -180,7 +180,7 @@ def test_ratios_are_to_the_row() -> None:
 
 
 def test_what_has_no_tool_did_nothing_and_each_scene_has_its_tables() -> None:
-    times = LoopTimes(9, 6.0, 12.0, math.nan)
+    times = TickTimes(9, 6.0, 12.0, math.nan)
     empty = LoopFigures("cup", EMPTY, times, times, 0.0, 0, *[math.nan] * 4)
     tables = loop_tables([*SOME, empty, *(replace(f, scene="peg") for f in SOME)])
     assert [(EMPTY in {row[0] for row in table.rows}) for table in tables] == [

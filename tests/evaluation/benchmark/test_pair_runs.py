@@ -79,8 +79,8 @@ def test_frames_are_sorted_by_the_sign_of_the_exact_distance() -> None:
             for way in (press.X_WA[1:] for press in make_presses(PAIR, 2))
         ]
     )
-    assert right.apart.frames == (exact > 0).sum()
-    assert right.in_depth.frames == (exact < 0).sum()
+    assert right.apart.ticks == (exact > 0).sum()
+    assert right.in_depth.ticks == (exact < 0).sum()
     assert other.apart.median_us == other.apart.p99_us == pytest.approx(3)
     assert other.in_depth.median_us == other.in_depth.p99_us == pytest.approx(7)
 

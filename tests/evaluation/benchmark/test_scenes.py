@@ -98,7 +98,7 @@ def test_near_ticks_are_those_in_which_all_find_a_contact(problem) -> None:
     }
     one = SceneProblem("x", problem.tool, problem.objects, problem.X_WO, [np.eye(4)])
     ours, peer = run_scene(one, queries, repeats=3)
-    assert (ours.near.frames, ours.all_ticks.frames) == (2, 4)
+    assert (ours.near.ticks, ours.all_ticks.ticks) == (2, 4)
     assert ours.near.median_us == pytest.approx(3)
     assert peer.near.median_us == pytest.approx(30)
     assert ours.all_ticks.median_us == pytest.approx(2.5)

@@ -14,13 +14,6 @@ from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold
 TICKS = 20
 
 
-def test_topology():
-    delay = ForceDelay(PERIOD, 2)
-    assert delay.GetInputPort("F_Ho_W_rendered").size() == 6
-    assert delay.GetOutputPort("F_delayed").size() == 6
-    assert not delay.HasAnyDirectFeedthrough()
-
-
 @pytest.mark.parametrize("samples", [1, 2, 5])
 def test_it_is_the_hold_shifted_by_as_many_ticks(samples):
     wrenches = np.random.default_rng(1).normal(size=(6, TICKS + 1))

@@ -74,13 +74,6 @@ def calc_expected(window):
     return np.array([arm.calc_handle_state(state) for state in states])
 
 
-def test_topology():
-    encoder = make_encoder()
-    assert encoder.GetInputPort("arm_state").size() == 12
-    assert encoder.GetOutputPort("handle_state").size() == 13
-    assert not encoder.HasAnyDirectFeedthrough()
-
-
 @pytest.mark.parametrize("window", [1, 2, 4, 9])
 def test_a_hold_of_the_same_tick_samples_what_was_just_counted(window):
     states = follow(make_encoder(window))

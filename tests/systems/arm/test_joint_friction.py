@@ -64,13 +64,6 @@ class PushedArm:
         return [np.array(column) for column in zip(*rows, strict=True)]
 
 
-def test_topology():
-    friction = JointFriction(load_plant(), PERIOD, S, COULOMB, np.zeros(6))
-    assert friction.get_input_port().size() == 12
-    assert friction.GetOutputPort("generalized_force").size() == 6
-    assert friction.num_discrete_state_groups() == 1
-
-
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.99])
 def test_below_breakaway_it_holds_without_creep_and_without_chatter(share):
     signs = np.array([1, -1, 1, -1, 1, 1])

@@ -50,12 +50,6 @@ def sample_states(count):
     )
 
 
-def test_topology():
-    motors = make_motors()
-    assert motors.GetOutputPort("generalized_force").size() == 6
-    assert motors.HasDirectFeedthrough(0) and motors.num_continuous_states() == 0
-
-
 @pytest.mark.parametrize("state", sample_states(20))
 def test_the_power_of_joints_and_of_motors_is_that_at_the_handle(state):
     F = np.random.default_rng(4).normal(size=6)

@@ -40,13 +40,6 @@ def make(method):
     return ContactClustering(method, TOLERANCE, 5e-3 if method == "octree" else None)
 
 
-def test_topology():
-    clustering = make("shared")
-    assert clustering.GetInputPort("contacts").get_name() == "contacts"
-    assert clustering.GetOutputPort("clusters").get_name() == "clusters"
-    assert clustering.CreateDefaultContext().num_total_states() == 0
-
-
 def test_the_octree_keeps_ends_apart_that_are_far_apart(contacts):
     clusters = evaluate(make("octree"), contacts)
     assert sorted(set(clusters.object_index.tolist())) == [0, 1]

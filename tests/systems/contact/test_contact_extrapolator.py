@@ -33,8 +33,6 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.scene.schema import ContactParameters, Effects
 from drake_haptics.simulation.run import run
-from drake_haptics.systems.contact.contact_extrapolator import ContactExtrapolator
-from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.pose_sampler import PoseSampler
 
 T = 2e-3
@@ -236,17 +234,9 @@ def test_poses_that_are_none_are_refused() -> None:
         ContactExtrapolation(tool, [], []).advance(contacts, IDENTITY, IDENTITY)
 
 
-def test_topology() -> None:
-    objects = [ContactObject("still", SLAB, RigidTransform()), ContactObject("b", SLAB)]
-    advance = ContactExtrapolator(spike([0, 0, 0]), objects)
-    ports = [advance.get_input_port(i).get_name() for i in range(5)]
-    assert ports == ["contacts", "found_X_WT", "X_WT", "found_X_WO_b", "X_WO_b"]
-    assert advance.num_input_ports() == 5 and advance.num_output_ports() == 1
-    assert advance.CreateDefaultContext().num_total_states() == 0
-    sample = PoseSampler(["b"], 4e-3)
-    assert sample.list_state_names()[:1] == ["X_WT.qw"]
-    assert len(sample.list_state_names()) == 14
-    assert not sample.HasAnyDirectFeedthrough()
+def test_a_sampler_names_its_state_and_checks_its_period() -> None:
+    names = PoseSampler(["b"], 4e-3).list_state_names()
+    assert names[:1] == ["X_WT.qw"] and len(names) == 14
     with pytest.raises(ValueError, match="period_s must be positive, is 0"):
         PoseSampler([], 0.0)
 

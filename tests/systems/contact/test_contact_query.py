@@ -24,19 +24,6 @@ def plate():
     return box_core(0.2, 0.2, 0.02)
 
 
-def test_topology(tool, plate):
-    query = ContactQuery(
-        tool,
-        [ContactObject("still", plate, RigidTransform()), ContactObject("cart", plate)],
-        TOLERANCE,
-    )
-    names = [query.get_input_port(i).get_name() for i in range(query.num_input_ports())]
-    assert names == ["X_WT", "X_WO_cart"]
-    assert query.num_output_ports() == 1
-    assert query.GetOutputPort("contacts").get_name() == "contacts"
-    assert query.CreateDefaultContext().num_total_states() == 0
-
-
 @pytest.mark.parametrize("gap", [-3e-3, -1e-4, 1e-4, 1.9e-3])
 def test_a_box_over_a_plate(tool, plate, gap):
     query = ContactQuery(

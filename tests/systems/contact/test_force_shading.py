@@ -54,20 +54,6 @@ def degrees_between(u, v):
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v)), np.dot(u, v)))
 
 
-def test_topology(tool, ball):
-    shading, context = make_shading(
-        tool,
-        [ContactObject("still", ball, RigidTransform()), ContactObject("cart", ball)],
-        [True, True],
-    )
-    inputs = range(shading.num_input_ports())
-    names = [shading.get_input_port(i).get_name() for i in inputs]
-    assert names == ["contacts", "X_WT", "X_WO_cart"]
-    assert shading.num_output_ports() == 1
-    assert shading.GetOutputPort("contacts").get_name() == "contacts"
-    assert context.num_total_states() == 0
-
-
 @pytest.mark.parametrize("moves", [False, True])
 def test_the_normal_of_a_tessellated_ball_is_that_of_the_sphere(tool, ball, moves):
     X_WO = RigidTransform([0.3, -0.1, 0.5])

@@ -56,15 +56,6 @@ def evaluate(system, p_WC, f, q_WO):
     return system.GetOutputPort("F_O_W").Eval(context)
 
 
-def test_topology(system):
-    names = [
-        system.get_input_port(i).get_name() for i in range(system.num_input_ports())
-    ]
-    assert names == ["clusters", "friction_force", "X_WO_cart", "X_WO_door"]
-    assert system.GetOutputPort("F_O_W").size() == 12
-    assert system.CreateDefaultContext().num_total_states() == 0
-
-
 def test_each_object_gets_the_opposite_of_its_own_clusters(system):
     p_WC, f, q_WO = random_case(0)
     expected = np.zeros((2, 6))

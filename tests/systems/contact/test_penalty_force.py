@@ -52,16 +52,6 @@ def fix(force, context, clusters, V_WT=AT_REST):
     force.GetInputPort("V_WT").FixValue(context, V_WT)
 
 
-def test_topology(plate):
-    force, _ = make_force([ContactObject("cart", plate)])
-    names = [force.get_input_port(i).get_name() for i in range(force.num_input_ports())]
-    assert names == ["clusters", "X_WT", "V_WT", "X_WO_cart", "V_WO_cart"]
-    assert force.GetOutputPort("wrench_model").size() == 78
-    assert force.GetOutputPort("F_To_W").size() == 6
-    assert force.GetOutputPort("F_O_W").size() == 6
-    assert force.CreateDefaultContext().num_total_states() == 0
-
-
 def test_a_pressed_box_is_pushed_up(plate, clusters):
     assert len(clusters) == 1
     force, context = make_force([ContactObject("plate", plate, RigidTransform())])
@@ -140,46 +130,6 @@ def test_of_many_objects_at_rest_a_tick_reads_none(plate, clusters, monkeypatch)
     assert wrench.F_objects_W.shape == (900, 6)
     assert wrench.F_objects_W[0].any()
     assert not wrench.F_objects_W[1:].any()
-
-
-def test_approach_is_damped_and_departure_is_not(plate, clusters):
-    force, context = make_force([ContactObject("plate", plate, RigidTransform())])
-    port = force.GetOutputPort("F_To_W")
-    fix(force, context, clusters)
-    still = port.Eval(context)[5]
-    fix(force, context, clusters, [0, 0, 0, 0, 0, -0.1])
-    assert port.Eval(context)[5] == pytest.approx(still + 0.1 * B)
-    fix(force, context, clusters, [0, 0, 0, 0, 0, 0.1])
-    assert port.Eval(context)[5] == pytest.approx(still)
-
-
-def test_only_the_motion_between_the_two_counts(plate, clusters):
-    force, context = make_force([ContactObject("cart", plate)])
-    down = np.array([0, 0, 0, 0, 0, -0.1])
-    fix(force, context, clusters, down)
-    force.GetInputPort("X_WO_cart").FixValue(context, at_height(0.0))
-    velocity = force.GetInputPort("V_WO_cart")
-    velocity.FixValue(context, down)
-    together = force.GetOutputPort("F_To_W").Eval(context)[5]
-    velocity.FixValue(context, np.zeros(6))
-    approaching = force.GetOutputPort("F_To_W").Eval(context)[5]
-    assert approaching - together == pytest.approx(0.1 * B)
-
-
-def test_each_object_has_its_own_gains(plate):
-    """Two plates in one place answer as one with the sum of their gains."""
-    tool = box_core(0.02, 0.02, 0.02)
-    objects = [ContactObject(name, plate, RigidTransform()) for name in "ab"]
-    query = ContactQuery(tool, objects, TOLERANCE)
-    contacts = query_at(query, query.CreateDefaultContext(), HEIGHT)
-    force = PenaltyForce(objects, [K, 2 * K], [B, 3 * B])
-    context = force.CreateDefaultContext()
-    down = [0, 0, 0, 0, 0, -0.1]
-    fix(force, context, cluster_contacts(contacts, 0.1, TOLERANCE), down)
-    wrench = force.GetOutputPort("contact_wrench").Eval(context)
-    one = K * (TOLERANCE + 5e-4) + 0.1 * B
-    two = 2 * K * (TOLERANCE + 5e-4) + 0.3 * B
-    np.testing.assert_allclose(wrench.F_objects_W[:, 5], [-one, -two], atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["stiffness_N_per_m", "damping_Ns_per_m"])

@@ -35,17 +35,6 @@ def make_braking(objects, **options):
     return PreContactBraking(objects, damping_Ns_per_m=B, distance_m=D, **options)
 
 
-def test_topology(plate):
-    braking = make_braking([ContactObject("cart", plate)])
-    count = braking.num_input_ports()
-    names = [braking.get_input_port(i).get_name() for i in range(count)]
-    assert names == ["contacts", "X_WT", "V_WT", "X_WO_cart", "V_WO_cart"]
-    assert braking.num_output_ports() == 2
-    assert braking.GetOutputPort("wrench_model").size() == 78
-    assert braking.GetOutputPort("F_O_W").size() == 6
-    assert braking.CreateDefaultContext().num_total_states() == 0
-
-
 def fixed(braking, contacts, height, V_WT):
     context = braking.CreateDefaultContext()
     braking.GetInputPort("contacts").FixValue(context, Value[object](contacts))
@@ -77,22 +66,6 @@ def test_a_loop_that_sheds_load_brakes_later(cube, plate):
     braking.GetInputPort("load_shedding").FixValue(context, [1.5, 0.5, 0.0])
     model = braking.GetOutputPort("wrench_model").Eval(context)
     np.testing.assert_allclose(model[3:6], [0, 0, B * 0.2], atol=1e-9)
-
-
-def test_only_the_motion_between_the_two_counts(cube, plate):
-    cart = [ContactObject("cart", plate)]
-    query, braking = ContactQuery(cube, cart, D), make_braking(cart)
-    height = TOUCH + 0.5 * D
-    query_context = query.CreateDefaultContext()
-    query.GetInputPort("X_WO_cart").FixValue(query_context, at_height(0.0))
-    contacts = query_at(query, query_context, height)
-    context = fixed(braking, contacts, height, 0.2 * DOWN)
-    braking.GetInputPort("X_WO_cart").FixValue(context, at_height(0.0))
-    velocity = braking.GetInputPort("V_WO_cart")
-    for speed, force in [(0.2, 0.0), (0.0, 0.2 * B), (-0.1, 0.3 * B)]:
-        velocity.FixValue(context, speed * DOWN)
-        model = braking.GetOutputPort("wrench_model").Eval(context)
-        assert model[5] == pytest.approx(force, abs=1e-12)
 
 
 def test_nothing_that_moves_has_no_reaction(plate):
@@ -179,14 +152,6 @@ def test_a_falling_tool_slows_as_the_differential_equation_says(cube, plate):
     # The tool's step is of first order.
     np.testing.assert_allclose(v, expected, atol=2e-3 * speed)
     assert v[-1] == pytest.approx(-(speed - 2 * B * D / (3 * mass)), rel=5e-3)
-
-
-def test_a_slow_tool_stops_before_it_touches(cube, plate):
-    mass, period = 0.1, 1e-3
-    speed = 0.9 * 2 * B * D / (3 * mass)
-    d, v = approach(cube, plate, speed, mass, period, 500)
-    assert d.min() > 0
-    assert abs(v[-1]) < 1e-4
 
 
 def near(rng, angle, way):

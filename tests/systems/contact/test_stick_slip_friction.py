@@ -79,17 +79,6 @@ def force(friction, context):
     return friction.GetOutputPort("wrench_model").Eval(context)[3]
 
 
-def test_topology():
-    cart = ContactObject("cart", FLOOR)
-    friction = make([fixed(), cart])
-    names = [friction.get_input_port(i).get_name() for i in range(4)]
-    assert friction.num_input_ports() == 4
-    assert names == ["clusters", "contact_wrench", "X_WT", "X_WO_cart"]
-    assert friction.GetOutputPort("wrench_model").size() == 78
-    assert friction.GetOutputPort("friction_force").get_name() == "friction_force"
-    assert friction.GetInputPort("X_WO_cart").size() == 7
-
-
 def test_its_state_is_what_linearization_accepts():
     friction = make([fixed()])
     assert friction.IsDifferenceEquationSystem() == (True, PERIOD)

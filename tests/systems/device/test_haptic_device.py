@@ -16,17 +16,6 @@ from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
 
-def test_topology():
-    device = make_device()
-    assert [device.GetInputPort("F_Ho_W_commanded").size()] == [6]
-    sizes = {"X_WH": 7, "V_WH": 6, "F_Ho_W_rendered": 6, "status": 1}
-    assert {
-        device.get_output_port(i).get_name(): device.get_output_port(i).size()
-        for i in range(device.num_output_ports())
-    } == sizes
-    assert not device.HasAnyDirectFeedthrough()
-
-
 def test_it_shows_a_wrench_from_its_sample_until_the_next():
     device = make_device()
     builder = DiagramBuilder()

@@ -29,15 +29,6 @@ def sample(wrench):
     )
 
 
-def test_topology():
-    hold = RenderedForceHold(1e-3, MAX_FORCE, MAX_TORQUE)
-    assert hold.GetInputPort("F_Ho_W_commanded").size() == 6
-    assert hold.GetOutputPort("F_Ho_W_rendered").size() == 6
-    assert hold.GetOutputPort("status").size() == 1
-    assert not hold.HasAnyDirectFeedthrough()
-    assert hold.num_discrete_state_groups() == 1
-
-
 def test_within_the_limits_it_shows_what_is_asked():
     wrench = [0.05, -0.05, 0.1, 3.0, -4.0, 5.0]
     applied, status = sample(wrench)

@@ -33,44 +33,6 @@ from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
 REST = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def list_ports(system):
-    ports = [system.get_input_port(i) for i in range(system.num_input_ports())]
-    ports += [system.get_output_port(i) for i in range(system.num_output_ports())]
-    return {port.get_name(): port.size() for port in ports}
-
-
-def test_topology():
-    assert list_ports(HapticStatusSender(PERIOD_S)) == {
-        "X_BH": 7,
-        "V_BH": 6,
-        "gate_status": 0,
-        "buttons": 1,
-        "lcmt_haptic_status": 0,
-    }
-    assert list_ports(HapticStatusReceiver()) == {
-        "lcmt_haptic_status": 0,
-        "X_BH": 7,
-        "V_BH": 6,
-        "F_Ho_B": 6,
-        "gate": 1,
-        "fault": 1,
-    }
-    assert list_ports(HapticCommandSender(PERIOD_S)) == {
-        "F_Ho_B": 6,
-        "enable": 1,
-        "lcmt_haptic_command": 0,
-    }
-    receiver = make_receiver()
-    assert list_ports(receiver) == {
-        "lcmt_haptic_command": 0,
-        "X_BH": 7,
-        "V_BH": 6,
-        "F_Ho_B": 6,
-        "gate_status": 0,
-    }
-    assert not receiver.HasAnyDirectFeedthrough()
-
-
 def make_receiver():
     return HapticCommandReceiver(PERIOD_S, max_force_N=MAX_FORCE_N, max_torque_Nm=0.2)
 

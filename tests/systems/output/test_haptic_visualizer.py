@@ -30,25 +30,6 @@ from drake_haptics.systems.output import haptic_visualizer
 from drake_haptics.systems.output.meshcat_shapes import ArrowPool
 
 
-def test_ports_have_drakes_names_and_sizes():
-    moving = ContactObject("lid", make_mesh(), None)
-    visualizer = make_visualizer(FakeMeshcat(), [moving])
-    assert {
-        visualizer.get_input_port(i).get_name(): visualizer.get_input_port(i).size()
-        for i in range(visualizer.num_input_ports())
-    } == {
-        "X_WH": 7,
-        "X_WT": 7,
-        "contacts": 0,
-        "clusters": 0,
-        "contact_wrench": 0,
-        "F_Ho_W_commanded": 6,
-        "X_WO_lid": 7,
-    }
-    assert visualizer.num_output_ports() == 0
-    assert visualizer.num_continuous_states() == 0
-
-
 def test_tool_and_ghost_are_where_the_ports_say():
     meshcat = FakeMeshcat()
     visualizer = make_visualizer(meshcat)

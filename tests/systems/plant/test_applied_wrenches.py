@@ -25,21 +25,6 @@ def fix(system, context, seed=0):
     return values
 
 
-def test_topology():
-    system = make_system()
-    assert {
-        system.get_input_port(i).get_name(): system.get_input_port(i).size()
-        for i in range(system.num_input_ports())
-    } == {
-        "F_To_W_contact": 6,
-        "F_To_W_coupling": 6,
-        "F_O_W_contact": 12,
-        "F_O_W_friction": 12,
-    }
-    assert system.get_output_port().get_name() == "applied_spatial_force"
-    assert system.CreateDefaultContext().num_total_states() == 0
-
-
 def test_wrenches_on_a_body_are_summed_at_its_origin():
     system = make_system()
     context = system.CreateDefaultContext()

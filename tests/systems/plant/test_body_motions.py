@@ -37,17 +37,6 @@ def random_state(plant, seed):
     return x
 
 
-def test_topology():
-    _, motions = make_scene()
-    names = [motions.get_input_port(i).get_name() for i in range(2)]
-    assert names == ["body_poses", "body_spatial_velocities"]
-    assert {
-        motions.get_output_port(i).get_name(): motions.get_output_port(i).size()
-        for i in range(motions.num_output_ports())
-    } == dict(zip(OUTPUTS, (7, 6, 7, 6), strict=True))
-    assert motions.CreateDefaultContext().num_total_states() == 0
-
-
 @pytest.mark.parametrize("config", PLANTS.values(), ids=PLANTS)
 def test_each_body_is_read_in_its_own_place(config):
     scene, motions = make_scene(config)

@@ -38,14 +38,6 @@ def velocity_after(tool, ticks, **inputs):
     return tool.GetOutputPort("V_WT").Eval(simulator.get_context())
 
 
-def test_topology(tool):
-    names = [tool.get_input_port(i).get_name() for i in range(2)]
-    assert names == ["coupling", "contact"]
-    assert tool.GetOutputPort("X_WT").size() == 7
-    assert tool.GetOutputPort("V_WT").size() == 6
-    assert not tool.HasAnyDirectFeedthrough()
-
-
 def test_its_state_is_what_linearization_accepts(tool):
     # One discrete group, one period, no offset.
     assert tool.IsDifferenceEquationSystem() == (True, PERIOD)

@@ -57,14 +57,6 @@ class Port:
         self.context.SetDiscreteState(new.get_vector().CopyToVector())
 
 
-def test_topology(control):
-    names = [control.get_input_port(i).get_name() for i in range(4)]
-    assert names == ["F_Ho_W_desired", "F_Ho_W_rendered", "X_WH", "V_WH"]
-    assert control.num_input_ports() == 4
-    assert control.GetOutputPort("F_Ho_W_commanded").size() == 6
-    assert control.GetOutputPort("energy_J").size() == 1
-
-
 def test_what_is_asked_goes_straight_through(control):
     """No sample of delay: only a hold on F_Ho_W_commanded closes the loop."""
     display = control.GetOutputPort("F_Ho_W_commanded").get_index()

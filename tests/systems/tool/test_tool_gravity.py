@@ -27,15 +27,6 @@ def random_pose(seed):
     return RigidTransform(RollPitchYaw(rng.uniform(-3, 3, 3)), rng.normal(size=3))
 
 
-def test_topology():
-    gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM)
-    assert gravity.num_input_ports() == 1
-    assert gravity.GetInputPort("X_WT").size() == 7
-    assert gravity.num_output_ports() == 1
-    assert gravity.GetOutputPort("wrench_model").size() == 78
-    assert gravity.CreateDefaultContext().num_total_states() == 0
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_it_is_a_force_at_the_center_of_mass(seed):
     X_WT = random_pose(seed)

@@ -8,14 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydrake.common import MemoryFile
 from pydrake.geometry import (
     AddCompliantHydroelasticProperties,
     AddContactMaterial,
     AddRigidHydroelasticProperties,
     GeometryId,
-    InMemoryMesh,
-    Mesh,
     ProximityProperties,
     SceneGraph,
     SignedDistancePair,
@@ -44,6 +41,7 @@ from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
     quiet_streams,
     register_pieces,
+    to_drake_mesh,
 )
 from drake_haptics.evaluation.measuring.timing import typical
 from drake_haptics.geometry.decomposition.decompose import Decomposition
@@ -181,14 +179,6 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
     columns = np.array(rows).reshape(-1, 11)
     found = FoundContacts.of(np.array(start), columns, seconds)
     return apply_law(problem, found)
-
-
-def to_drake_mesh(part: Decomposition) -> Mesh:
-    """Returns a mesh as Drake's, without a file."""
-    lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in part.mesh.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in (part.mesh.triangles + 1).tolist()]
-    file = MemoryFile("\n".join(lines) + "\n", ".obj", "mesh")
-    return Mesh(mesh_data=InMemoryMesh(mesh_file=file))
 
 
 def _find_part(

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass
-
-import numpy as np
+from dataclasses import dataclass
 
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.report.page import Table
@@ -39,29 +37,6 @@ _COMPUTES = (
 
 
 @dataclass(frozen=True)
-class LoopTimes:
-    """Times of many ticks.
-
-    Attributes:
-        ticks: How many.
-        median_us: Half of them took less, µs.
-        p99_us: 99 of 100 took less, µs.
-        p99_9_us: 999 of 1000 took less, µs.
-    """
-
-    ticks: int
-    median_us: float
-    p99_us: float
-    p99_9_us: float
-
-    @staticmethod
-    def of(seconds: np.ndarray) -> LoopTimes:
-        """Sums up (n,) times of ticks, s; NaN where there are none."""
-        times = TickTimes.of(seconds)
-        return LoopTimes(len(seconds), *astuple(times))
-
-
-@dataclass(frozen=True)
 class LoopFigures:
     """The times of one loop, and its motion.
 
@@ -81,8 +56,8 @@ class LoopFigures:
 
     scene: str
     loop: str
-    in_contact: LoopTimes
-    all_ticks: LoopTimes
+    in_contact: TickTimes
+    all_ticks: TickTimes
     median_contacts: float
     max_contacts: int
     deepest_m: float
@@ -160,10 +135,10 @@ def _make_deeds(scene: str, by_name: dict[str, LoopFigures]) -> Table:
     )
 
 
-def _list_times(times: LoopTimes) -> tuple[str, ...]:
+def _list_times(times: TickTimes) -> tuple[str, ...]:
     figures = (times.median_us, times.p99_us, times.p99_9_us)
     return tuple(f"{us:.1f}" if us < 100.0 else f"{us:.0f}" for us in figures)
 
 
-def _ratio(ours: LoopTimes, other: LoopTimes) -> str:
+def _ratio(ours: TickTimes, other: TickTimes) -> str:
     return f"{ours.median_us / other.median_us:.2f}"

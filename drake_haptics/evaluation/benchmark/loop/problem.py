@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 from pydrake.math import RigidTransform
+from pydrake.multibody.tree import RotationalInertia, SpatialInertia
 
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
@@ -55,6 +56,26 @@ class LoopProblem:
         return np.array(
             [pose_to_vector(vector_to_pose(X) @ self.X_HT) for X in self.motion.X_WH]
         )
+
+    @property
+    def M_TTo_T(self) -> SpatialInertia:
+        """Spatial inertia of the tool about its origin."""
+        p_TTcm, I_TTcm_T = self.mass_properties()
+        return SpatialInertia.MakeFromCentralInertia(
+            self.scene.tool.mass_kg,
+            p_TTcm,
+            RotationalInertia(*moments_and_products(I_TTcm_T)),
+        )
+
+    @property
+    def explicit_rotational_damping(self) -> float:
+        """The coupling's, at most I / h, which a force of the step's beginning holds.
+
+        N·m·s/rad; I is the tool's least moment of inertia and h the tick.
+        """
+        least = float(np.linalg.eigvalsh(self.mass_properties()[1]).min())
+        own = self.scene.coupling.rotational_damping_Nms_per_rad
+        return min(own, least / self.motion.period_s)
 
     def mass_properties(self) -> tuple[np.ndarray, np.ndarray]:
         """Returns p_TTcm (3,), m, and I_TTcm_T (3, 3), kg·m², of the tool."""

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.loop.empty_system import EmptyLoop
 from drake_haptics.evaluation.benchmark.loop.figures import (
     BACKEND,
     EMPTY,
@@ -20,13 +19,13 @@ from drake_haptics.evaluation.benchmark.loop.figures import (
     SCENE,
     STOCK,
     LoopFigures,
-    LoopTimes,
 )
 from drake_haptics.evaluation.benchmark.loop.problem import (
     Loop,
     LoopCourse,
     LoopProblem,
 )
+from drake_haptics.evaluation.benchmark.loop.simulated_ticks import EmptyLoop
 from drake_haptics.evaluation.benchmark.loop.stock_drake import StockLoop, has_solver
 from drake_haptics.evaluation.benchmark.loop.this_package import (
     BackendLoop,
@@ -38,7 +37,7 @@ from drake_haptics.evaluation.benchmark.loop.with_outside import OutsideLoop
 from drake_haptics.evaluation.benchmark.loop.your_plant import PlantLoop
 from drake_haptics.evaluation.benchmark.outside_library import OutsideLibrary
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
-from drake_haptics.evaluation.measuring.timing import take_turns, typical
+from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
 
 # This package's: each is run as fast as it can, and paced.
 _OWN: dict[str, Callable[..., Loop]] = {
@@ -137,8 +136,8 @@ def _make_figures(
     times: dict[str, Any] = {
         "scene": problem.name,
         "loop": name,
-        "in_contact": LoopTimes.of(seconds[touching]),
-        "all_ticks": LoopTimes.of(seconds),
+        "in_contact": TickTimes.of(seconds[touching]),
+        "all_ticks": TickTimes.of(seconds),
     }
     if course is None:
         none = math.nan

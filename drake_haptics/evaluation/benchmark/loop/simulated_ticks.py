@@ -1,15 +1,23 @@
-"""Times the ticks that a Simulator takes, one by one."""
+"""Runs loops in Drake's Simulator: times ticks one by one, and reads what happens."""
 
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 
 import numpy as np
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Context, EventStatus
+from pydrake.systems.framework import (
+    Context,
+    DiscreteValues,
+    EventStatus,
+    LeafSystem,
+    OutputPort,
+)
 
 from drake_haptics.common.real_time import RealTimePacer
+from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
 from drake_haptics.evaluation.measuring.timing import steady_memory
 
 
@@ -52,3 +60,84 @@ def time_ticks(
         simulator.AdvanceTo((ticks - 0.5) * period_s)
     # The last tick ends where the run does, not where a tick does.
     return (np.array(ends) - begins[: len(ends)])[:ticks]
+
+
+class SimulatedLoop(ABC):
+    """A loop whose ticks Drake's Simulator makes."""
+
+    def __init__(self, problem: LoopProblem, *, paced: bool = False):
+        """Keeps what the loop is given.
+
+        Args:
+            problem: What it is given.
+            paced: Whether ticks that are timed wait for the clock, as for a device;
+                else each follows the one before at once.
+        """
+        self._problem = problem
+        self._paced = paced
+
+    @abstractmethod
+    def make_simulator(self) -> Simulator:
+        """Returns a simulator at the beginning of the motion."""
+
+    def time(self) -> np.ndarray:
+        """See `Loop.time`."""
+        motion = self._problem.motion
+        return time_ticks(
+            self.make_simulator(), len(motion), motion.period_s, paced=self._paced
+        )
+
+
+def observe_ticks(
+    problem: LoopProblem, simulator: Simulator, pose: OutputPort, contacts: OutputPort
+) -> LoopCourse:
+    """Returns what happens in a loop; reading costs nothing twice, but is not timed.
+
+    Args:
+        problem: What the loop is given.
+        simulator: At the beginning of the motion.
+        pose: Begins with the tool's [qw qx qy qz x y z], m.
+        contacts: The `ContactSet` of each tick.
+    """
+    root = simulator.get_context()
+    pose_context = pose.get_system().GetMyContextFromRoot(root)
+    contacts_context = contacts.get_system().GetMyContextFromRoot(root)
+    rows: list[np.ndarray] = []
+    counts: list[tuple[int, float]] = []
+
+    def note(context: Context) -> None:
+        rows.append(np.array(pose.Eval(pose_context)[:7]))
+        found = contacts.Eval(contacts_context)
+        counts.append((len(found), min(found.distance.tolist(), default=0.0)))
+
+    n = len(problem.motion)
+    simulator.Initialize()
+    note(root)
+    simulator.set_monitor(note)
+    simulator.AdvanceTo((n - 0.5) * problem.motion.period_s)
+    X_WT, (num_contacts, nearest_m) = np.array(rows[:n]), np.array(counts[:n]).T
+    force_N = problem.spring_force(X_WT[:, 4:])
+    return LoopCourse(X_WT, num_contacts.astype(int), nearest_m, force_N)
+
+
+class EmptyLoop(SimulatedLoop):
+    """What Drake's Simulator and one call of Python take in each tick."""
+
+    def observe(self) -> None:
+        """Has no tool; see `Loop.observe`."""
+
+    def make_simulator(self) -> Simulator:
+        """Returns a simulator of one Python system that does nothing."""
+        return Simulator(_EmptySystem(self._problem.motion.period_s))
+
+
+class _EmptySystem(LeafSystem):
+    """A discrete state that an update leaves as it is."""
+
+    def __init__(self, period_s: float):
+        super().__init__()
+        self.DeclareDiscreteState(1)
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        """Does nothing."""

@@ -14,17 +14,12 @@ from pydrake.multibody.plant import (
 from pydrake.multibody.tree import (
     FixedOffsetFrame,
     LinearBushingRollPitchYaw,
-    RotationalInertia,
     SpatialInertia,
 )
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder
 
-from drake_haptics.evaluation.benchmark.loop.problem import (
-    LoopCourse,
-    LoopProblem,
-    moments_and_products,
-)
+from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
 from drake_haptics.evaluation.benchmark.loop.simulated_ticks import time_ticks
 from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
@@ -136,15 +131,7 @@ class StockLoop:
         handle = plant.AddRigidBody(
             "handle", SpatialInertia.SolidSphereWithMass(_HANDLE_KG, _HANDLE_RADIUS_M)
         )
-        p_TTcm, I_T = problem.mass_properties()
-        tool = plant.AddRigidBody(
-            "tool",
-            SpatialInertia.MakeFromCentralInertia(
-                problem.scene.tool.mass_kg,
-                p_TTcm,
-                RotationalInertia(*moments_and_products(I_T)),
-            ),
-        )
+        tool = plant.AddRigidBody("tool", problem.M_TTo_T)
         contact = problem.scene.contact
         surface = make_surface(contact.stiffness_N_per_m, contact.damping_Ns_per_m)
         register_pieces(plant, tool, RigidTransform(), problem.tool, surface)
@@ -154,16 +141,12 @@ class StockLoop:
             FixedOffsetFrame("grip", handle.body_frame(), problem.X_HT)
         )
         gains = problem.scene.coupling
-        damping = min(
-            gains.rotational_damping_Nms_per_rad,
-            float(np.linalg.eigvalsh(I_T).min()) / problem.motion.period_s,
-        )
         plant.AddForceElement(
             LinearBushingRollPitchYaw(
                 grip,
                 tool.body_frame(),
                 [gains.rotational_stiffness_Nm_per_rad] * 3,
-                [damping] * 3,
+                [problem.explicit_rotational_damping] * 3,
                 [gains.stiffness_N_per_m] * 3,
                 [gains.damping_Ns_per_m] * 3,
             )

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Context, Diagram, DiagramBuilder, EventStatus
+from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Demultiplexer, PassThrough, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
@@ -17,7 +17,10 @@ from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
-from drake_haptics.evaluation.benchmark.loop.simulated_ticks import time_ticks
+from drake_haptics.evaluation.benchmark.loop.simulated_ticks import (
+    SimulatedLoop,
+    observe_ticks,
+)
 from drake_haptics.evaluation.measuring.timing import clock_interval
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
@@ -30,22 +33,15 @@ from drake_haptics.systems.device.haptic_device import HapticDevice
 _EARLY = 1e-3
 
 
-class ThisLoop:
+class ThisLoop(SimulatedLoop):
     """The systems of `AddHapticLoop`, from a device's reading to its wrench.
 
     Behind the device port is a recording in Drake's own `TrajectorySource`.
     """
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Builds the loop.
-
-        Args:
-            problem: What it is given.
-            paced: Whether ticks that are timed wait for the clock, as for a device;
-                else each follows the one before at once.
-        """
-        self._problem = problem
-        self._paced = paced
+        """Builds the loop, see `SimulatedLoop`."""
+        super().__init__(problem, paced=paced)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SceneWarning)
             self._haptic = self._build()
@@ -55,24 +51,18 @@ class ThisLoop:
             self._problem.scene, device=make_recorded_device(self._problem)
         )
 
-    def _rewind(self) -> None:
-        """Begins the motion again, where the simulator's time does not say where."""
-
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
-        self._rewind()
-        return _observe(self._problem, self._haptic)
-
-    def time(self) -> np.ndarray:
-        """See `Loop.time`."""
-        motion = self._problem.motion
-        return time_ticks(
-            self.make_simulator(), len(motion), motion.period_s, paced=self._paced
+        loop = self._haptic.loop
+        return observe_ticks(
+            self._problem,
+            self.make_simulator(),
+            loop.haptic_tool.GetOutputPort("X_WT"),
+            loop.contact_query.GetOutputPort("contacts"),
         )
 
     def make_simulator(self) -> Simulator:
         """Returns a simulator at the beginning of the motion."""
-        self._rewind()
         return make_simulator(self._haptic)
 
 
@@ -83,8 +73,10 @@ class BackendLoop(ThisLoop):
         self._backend = _RecordedBackend(self._problem)
         return BuildHapticDiagram(self._problem.scene, device=self._backend)
 
-    def _rewind(self) -> None:
+    def make_simulator(self) -> Simulator:
+        """Returns a simulator at the beginning of the motion."""
         self._backend.rewind()
+        return super().make_simulator()
 
 
 class SceneLoop(ThisLoop):
@@ -170,34 +162,6 @@ class NativeLoop:
         """See `Loop.time`."""
         seconds: np.ndarray = _core.run_tool_loop(*self._arguments)[3]
         return seconds - clock_interval()
-
-
-def _observe(problem: LoopProblem, haptic: HapticDiagram) -> LoopCourse:
-    """Reads each tick's contacts, which costs nothing twice but is not timed."""
-    simulator = make_simulator(haptic)
-    root = simulator.get_context()
-    tool, query = haptic.loop.haptic_tool, haptic.loop.contact_query
-    pose, contacts = tool.GetOutputPort("X_WT"), query.GetOutputPort("contacts")
-    tool_context = tool.GetMyContextFromRoot(root)
-    query_context = query.GetMyContextFromRoot(root)
-    rows: list[np.ndarray] = []
-    counts: list[tuple[int, float]] = []
-
-    def note(context: Context) -> EventStatus:
-        rows.append(np.array(pose.Eval(tool_context)))
-        found = contacts.Eval(query_context)
-        counts.append((len(found), min(found.distance.tolist(), default=0.0)))
-        return EventStatus.Succeeded()
-
-    n = len(problem.motion)
-    simulator.Initialize()
-    note(root)
-    simulator.set_monitor(note)
-    simulator.AdvanceTo((n - 0.5) * problem.motion.period_s)
-    X_WT = np.array(rows[:n])
-    num_contacts, nearest_m = np.array(counts[:n]).T
-    force_N = problem.spring_force(X_WT[:, 4:])
-    return LoopCourse(X_WT, num_contacts.astype(int), nearest_m, force_N)
 
 
 def make_recorded_device(problem: LoopProblem) -> HapticDevice:

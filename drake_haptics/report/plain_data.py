@@ -1,12 +1,14 @@
-"""Turns dataclasses of figures into plain data for JSON, and back."""
+"""Turns figures into plain data for JSON, and back."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import is_dataclass
+from dataclasses import fields, is_dataclass
 from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
 
 Figures = TypeVar("Figures")
 
@@ -14,15 +16,28 @@ Figures = TypeVar("Figures")
 _NUMBERS = {"infinite": math.inf, "-infinite": -math.inf, "none": math.nan}
 
 
-def replace_numbers(data: Any, replace: Callable[[float], Any]) -> Any:
-    """Returns plain data with each infinite number and NaN replaced."""
-    if isinstance(data, dict):
-        return {key: replace_numbers(item, replace) for key, item in data.items()}
-    if isinstance(data, list | tuple):
-        return [replace_numbers(item, replace) for item in data]
-    if isinstance(data, float) and not math.isfinite(data):
-        return replace(data)
-    return data
+def to_plain_data(
+    value: Any, replace: Callable[[float], str | None] = lambda number: None
+) -> Any:
+    """Returns numbers, words, lists and dicts only, ready for JSON.
+
+    Dataclasses become dicts, and arrays and tuples lists.
+
+    Args:
+        value: The figures.
+        replace: Returns what stands for an infinite number or NaN.
+    """
+    if is_dataclass(value) and not isinstance(value, type):
+        value = {field.name: getattr(value, field.name) for field in fields(value)}
+    elif isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {key: to_plain_data(item, replace) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [to_plain_data(item, replace) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return replace(value)
+    return value
 
 
 def name_number(number: float) -> str:

@@ -1,0 +1,90 @@
+"""The pages of figures, as a browser shows them on a desk and on a phone."""
+
+import numpy as np
+import pytest
+from accuracy_samples import make_peers, make_study
+from headless_browser import HeadlessBrowser
+from held_samples import analyze_sample
+from paper_samples import make_evaluation
+
+from drake_haptics.analysis.stability_page import write_stability_page
+from drake_haptics.evaluation.accuracy.page import write_accuracy_page
+from drake_haptics.evaluation.paper.report import write_paper_page
+
+
+@pytest.fixture(params=[(1280, False), (390, True)], ids=["desk", "phone"])
+def browser(chromium, request):
+    width, is_phone = request.param
+    with HeadlessBrowser(chromium) as browser:
+        browser.resize(width, height=900, is_phone=is_phone)
+        browser.is_phone = is_phone
+        yield browser
+
+
+def check_page(browser, path, *, tables, pixels=1200):
+    """Opens a page and checks what is asked of each."""
+    browser.open(path.as_uri())
+    assert browser.evaluate("document.querySelectorAll('table').length") == tables
+    # Nothing reaches beyond the window's side; what is wider scrolls by itself.
+    assert browser.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    # The pictures' words can be read: none is shown at less than half its size.
+    assert browser.evaluate(
+        f"[...document.images].every(i => i.naturalWidth > {pixels} && i.width > 700)"
+    )
+    # Head and cells of each column begin or end at the same place.
+    assert browser.evaluate(
+        "[...document.querySelectorAll('table')].every(table => {"
+        "  const rows = [...table.rows].filter(row => row.cells.length > 1);"
+        "  return [...rows[0].cells].every((head, i) => rows.every(row =>"
+        "    getComputedStyle(row.cells[i]).textAlign"
+        "      == getComputedStyle(head).textAlign));"
+        "})"
+    )
+    colors = browser.screenshot().reshape(-1, 3)
+    assert len(np.unique(colors, axis=0)) > 50
+    assert browser.errors == []
+
+
+def measure_right_edge(browser, scrolled):
+    """Returns how bright, of 255, the corner of a picture is that scrolls sideways."""
+    x, y = browser.evaluate(
+        "(picture => {"
+        f"  picture.scrollLeft = {scrolled};"
+        "  const box = picture.getBoundingClientRect();"
+        "  return [box.right, box.top].map(Math.floor);"
+        "})(document.querySelector('.wide'))"
+    )
+    return browser.screenshot(x - 3, y + 1, 2, 2).mean()
+
+
+def test_the_page_on_accuracy_is_readable(browser, tmp_path):
+    path = tmp_path / "page.html"
+    write_accuracy_page(make_study(peers=make_peers()), path, "cup_spoon")
+    path.with_suffix(".png").unlink()  # the page needs nothing beside it
+    check_page(browser, path, tables=2)
+    assert browser.evaluate("document.title") == "What accuracy costs in cup_spoon"
+    # A bar is as wide as its share of the cell says.
+    assert browser.evaluate(
+        "getComputedStyle(document.querySelector('td.bar.time')).backgroundSize"
+    ).startswith("77.4%")
+    # A shadow at the side says that there is more, and goes where there is not.
+    assert (measure_right_edge(browser, 0) < 200.0) == browser.is_phone
+    assert measure_right_edge(browser, 9999) > 235.0
+
+
+def test_the_page_on_stability_is_readable(browser, tmp_path):
+    path = tmp_path / "page.html"
+    write_stability_page(analyze_sample(), "hammer_block", path)
+    check_page(browser, path, tables=4)
+    assert browser.evaluate("document.title") == "Stability of hammer_block"
+
+
+def test_the_page_on_the_papers_figures_is_readable(browser, tmp_path):
+    path = tmp_path / "page.html"
+    write_paper_page(make_evaluation(), path)
+    check_page(browser, path, tables=7, pixels=900)
+    assert browser.evaluate(
+        "[...document.querySelectorAll('.mark')].every(m => m.scrollWidth <="
+        " m.clientWidth && ['agrees', 'better', 'differs', 'not measured']"
+        ".includes(m.innerText))"
+    )
