@@ -44,9 +44,9 @@ class Search {
       const FacetSide of_q = FindSide(pieces_[q], at_edge[1]);
       if (of_p.side < 0 || of_q.side < 0) return;
       // Sine of the angle by which they rise above each other.
-      const double rise = (Rise(pieces_[p], of_p.facet, pieces_[q], of_q) +
-                           Rise(pieces_[q], of_q.facet, pieces_[p], of_p)) /
-                          2;
+      const Polytope& Q = pieces_[q];
+      const double rise = -pieces_[p].facets[of_p.facet].normal.dot(
+          Q.facet_loop_side[Q.facet_loop_start[of_q.facet] + of_q.side]);
       if (rise < -kSurfaceSlack) return;
       const bool is_flush = rise <= kSurfaceSlack;
       add(p, of_p.facet,
@@ -57,14 +57,6 @@ class Search {
   }
 
  private:
-  // How steeply a facet rises from its side above the plane of another one.
-  static double Rise(const Polytope& P, int facet, const Polytope& Q,
-                     const FacetSide& of_Q) {
-    const Vec3& outward =
-        Q.facet_loop_side[Q.facet_loop_start[of_Q.facet] + of_Q.side];
-    return -P.facets[facet].normal.dot(outward);
-  }
-
   FacetSide FindSide(const Polytope& P, const TriangleSide& side) const {
     const int facet = FindFacet(P, triangles_[side.triangle]);
     if (facet < 0) return {};

@@ -204,8 +204,8 @@ class Walk {
     candidate.feature_A = is_P_tool_ ? face : corner;
     candidate.feature_B = is_P_tool_ ? corner : face;
     candidate.n = is_P_tool_ ? Vec3(-normal) : Vec3(X_AB_.R * normal);
-    MinkowskiVertex vertex_pair = VertexPairOf(pair, candidate);
-    candidate.h = SupportGap(pair, candidate.n, &vertex_pair);
+    const MinkowskiVertex vertex_pair = VertexPairOf(pair, candidate);
+    candidate.h = normal.dot(At(vertex)) - P.facets[facet].offset;
     PairContact contact = ContactAtFacet(
         pair, candidate,
         candidate.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating);
