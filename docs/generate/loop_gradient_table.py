@@ -28,7 +28,6 @@ SCENES = (
     ("sphere_pen",),
     ("torus_peg",),
     ("cup_spoon", "contact.law=constraint"),
-    ("peg_in_hole", "contact.law=constraint"),
 )
 NUM_STATES = 12
 UNTIL_S = 3.0

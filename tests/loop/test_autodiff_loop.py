@@ -57,12 +57,9 @@ def test_derivatives_of_a_period_in_contact_are_those_of_doubles(run):
         assert np.nan_to_num(gradients.expected).any(axis=1).sum() >= 31
 
 
-@pytest.mark.parametrize(
-    ("name", "until_s"), [("cup_spoon", 3.0), ("peg_in_hole", 2.5)]
-)
-def test_so_they_are_by_constraints(name, until_s):
-    loop = build_scene(name, "contact.law=constraint")
-    for context in contact_states(loop, 4, until_s):
+def test_so_they_are_by_constraints():
+    loop = build_scene("cup_spoon", "contact.law=constraint")
+    for context in contact_states(loop, 4, 3.0):
         gradients = calc_gradients(loop, context)
         # A row that holds resists one side alone.
         assert gradients.is_kink.sum() < 0.5 * gradients.is_varied.sum()

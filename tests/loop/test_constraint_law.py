@@ -8,7 +8,6 @@ import pytest
 import trimesh
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate, write
 from fake_device import ScriptedDevice
-from held_samples import make_limits
 from pydrake.geometry import Meshcat, MeshcatParams
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
@@ -26,7 +25,7 @@ from drake_haptics import (
     read_tick_log,
     run,
 )
-from drake_haptics.analysis import scene_stability
+from drake_haptics.analysis.scene_stability import analyze_scene
 from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading
@@ -46,7 +45,6 @@ from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.simulation.replay_log import replay
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.simulation.transfer_state import transfer_context
-from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 from drake_haptics.tick_log.log_diff import compare_logs
@@ -432,21 +430,4 @@ def test_a_start_in_a_shape_is_told_and_led_out(pressed):
 def test_stability_with_friction_is_refused_by_name(pressed):
     pressed.effects.friction = FrictionParameters()
     with pytest.raises(ValueError, match=r"no derivatives.*effects\.friction"):
-        scene_stability.analyze_scene(pressed, map_size=0)
-
-
-def test_stability_is_that_of_the_contact_that_is_felt(pressed, monkeypatch):
-    monkeypatch.setattr(scene_stability, "find_stiffness_limits", make_no_limits)
-    found = scene_stability.analyze_scene(pressed, map_size=0)
-    coupling = pressed.coupling
-    assert found.is_stable and found.num_contacts > 3
-    X_WT, X_WP = PLATE_TOP + TOOL_HALF_HEIGHT + SKIN, PLATE_TOP + PRESS
-    grip = HAND_GRIPS[pressed.hand.grip]
-    # Hand and coupling are springs in series, pressed as far as the hand wants.
-    soft = 1 / coupling.stiffness_N_per_m + 1 / grip.stiffness_N_per_m
-    assert found.contact_force_N == pytest.approx((X_WT - X_WP) / soft, rel=0.02)
-
-
-def make_no_limits(held, kind, against, progress):
-    """Leaves out the search for limits, which has tests of its own."""
-    return dataclasses.replace(make_limits(2e4, against), kind=kind)
+        analyze_scene(pressed, map_size=0)

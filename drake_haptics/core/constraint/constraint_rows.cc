@@ -16,8 +16,6 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kHalvings = 5;
 // Directions that differ by no more are one.
 constexpr double kSameDirection = 1e-7;
-// Distances that differ by no more are one, m.
-constexpr double kSameDistance = 1e-13;
 
 double Largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
@@ -290,14 +288,6 @@ void ConstraintRows::AppendRows(int k) {
     const double reach = reach_of(plane.object);
     AppendFlushCorners(pair, contact.n, support, reach, &workspace_.patch,
                        &corners_);
-    // Of flush features the nearest point is a corner, or between corners that
-    // are as near. As a row of its own it would take a share of the load with
-    // it from corner to corner, and the tool would rock by a nanometer.
-    if (std::any_of(corners_.begin() + 1, corners_.end(), [&](const auto& c) {
-          return c.distance < contact.distance + kSameDistance;
-        })) {
-      corners_.erase(corners_.begin());
-    }
     if (!(plane.next_support == support)) {
       const Vec3 p_a = pair.a(plane.next_support.a);
       const Vec3 p_b = pair.b(plane.next_support.b);
