@@ -399,7 +399,7 @@ class _ConstraintStep(LeafSystem):
         next_state.set_value(np.concatenate([result.q_WT, result.V_WT]))
 
     def _follow(self, context: Context, state: State) -> None:
-        state.get_mutable_discrete_state().set_value(self._servo.tool_state)
+        state.get_mutable_discrete_state(0).set_value(self._servo.tool_state)
 
     def _renew(self, context: Context) -> EventStatus:
         gains = context.get_abstract_parameter(self._gains).get_value()
