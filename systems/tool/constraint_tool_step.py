@@ -545,7 +545,7 @@ class _ConstraintStep(DifferentiableSystem):
         next_state.set_value(0, np.concatenate([pose_to_vector(X_WT), V_WT]))
 
     def _follow(self, context: Context, state: State) -> None:
-        state.get_mutable_discrete_state().set_value(0, self._servo.tool_state)
+        state.get_mutable_discrete_state(0).set_value(self._servo.tool_state)
 
     def _renew(self, context: Context) -> EventStatus:
         gains = context.get_abstract_parameter(self._gains).get_value()
