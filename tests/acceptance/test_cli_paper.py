@@ -100,7 +100,7 @@ def test_the_page_is_readable(page, width):
         assert browser.evaluate(
             "document.documentElement.scrollWidth <= window.innerWidth"
         )
-        assert browser.evaluate("document.querySelectorAll('table').length") == 7
+        assert browser.evaluate("document.querySelectorAll('table').length") == 8
         assert browser.evaluate(
             "[...document.querySelectorAll('.mark')].every(m => m.scrollWidth <="
             " m.clientWidth && ['agrees', 'better', 'differs', 'not measured']"
