@@ -65,7 +65,7 @@ def test_a_key_that_is_there_twice():
 @pytest.mark.parametrize(
     ("word", "complaint"),
     [
-        ("contact.tolerance=1", "tolerance is no key .* 'contact.tolerance_m'"),
+        ("contact.tolerance=1", "tolerance is not a key .* 'contact.tolerance_m'"),
         ("contact={}", "contact: .* cannot be given as a whole"),
         ('effects.gravity={"g": 9.8}', "effects.gravity: .*'g'"),
         ("tool.mass_kg=heavy", "tool.mass_kg: expected a finite number"),
