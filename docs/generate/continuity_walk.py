@@ -75,6 +75,7 @@ def calc_rotation(rotvec: np.ndarray) -> np.ndarray:
 
 
 def calc_compression(contacts: _core.ContactSet, tolerance_m: float) -> np.ndarray:
+    """Returns how far each contact is inside the tolerance, m."""
     return np.maximum(0.0, tolerance_m - contacts.distance)
 
 

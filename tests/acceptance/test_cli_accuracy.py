@@ -1,17 +1,17 @@
 """`drake-haptics accuracy` from end to end."""
 
+import functools
 import json
 import re
 from dataclasses import replace
 from pathlib import Path
 
+import command_line
 import pytest
 from accuracy_samples import make_peers, make_study
-from click.testing import CliRunner
 from command_line import call
 
 from drake_haptics.cli import accuracy as command
-from drake_haptics.cli import main
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import RunError
@@ -23,9 +23,7 @@ ONLY = ["--only", "contact.tolerance_m=0.0005"]
 def invoke(monkeypatch, tmp_path):
     """Runs the command in this process, in a folder of its own."""
     monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(
-        main, ["accuracy", *map(str, arguments)]
-    )
+    return functools.partial(command_line.invoke, "accuracy")
 
 
 @pytest.fixture

@@ -3,10 +3,7 @@
 import json
 
 import pytest
-from click.testing import CliRunner
-from command_line import call
-
-from drake_haptics.cli import main
+from command_line import call, invoke
 
 
 def test_scenes_are_measured_and_written(tmp_path):
@@ -37,6 +34,6 @@ def test_an_unknown_part_is_a_wrong_call():
 
 
 def test_a_folder_without_any_of_the_meshes_is_told_at_once(tmp_path):
-    result = CliRunner().invoke(main, ["bench", "--meshes", str(tmp_path)])
+    result = invoke("bench", "--meshes", str(tmp_path))
     assert result.exit_code == 1 and result.stdout == ""
     assert f"Error: the folder {tmp_path} has none of torus_2000.obj" in result.stderr

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from click.shell_completion import get_completion_class
-from click.testing import CliRunner
+from command_line import invoke
 
 from drake_haptics.cli import main
 from drake_haptics.scene.device_preset import list_device_presets
@@ -72,7 +72,7 @@ def test_keys_of_a_scene_and_devices_for_it(line):
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_a_script_for_each_shell_says_where_it_belongs(shell):
-    result = CliRunner().invoke(main, ["completion", shell])
+    result = invoke("completion", shell)
     assert result.exit_code == 0, result.output
     first, *rest = result.stdout.splitlines()
     assert first.startswith("# ") and f"drake-haptics completion {shell}" in first
@@ -81,9 +81,9 @@ def test_a_script_for_each_shell_says_where_it_belongs(shell):
 
 def test_the_shell_of_the_user_is_taken_or_told(monkeypatch):
     monkeypatch.setenv("SHELL", "/usr/bin/zsh")
-    assert "#compdef drake-haptics" in CliRunner().invoke(main, ["completion"]).stdout
+    assert "#compdef drake-haptics" in invoke("completion").stdout
     monkeypatch.setenv("SHELL", "/bin/tcsh")
-    result = CliRunner().invoke(main, ["completion"])
+    result = invoke("completion")
     assert result.exit_code == 1 and "'tcsh': name bash, zsh, fish" in result.stderr
 
 

@@ -4,15 +4,14 @@ import json
 import re
 import socket
 
-from click.testing import CliRunner
+import command_line
 
-from drake_haptics.cli import main
 from drake_haptics.scene.library import find_scene
 
 
 def invoke(*arguments):
     """Runs the command in this process."""
-    return CliRunner().invoke(main, ["device", *map(str, arguments)])
+    return command_line.invoke("device", *arguments)
 
 
 def test_it_says_what_to_type_and_what_it_did():

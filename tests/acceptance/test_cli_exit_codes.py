@@ -7,9 +7,8 @@ import warnings
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from command_line import invoke
 
-from drake_haptics.cli import main
 from drake_haptics.cli import meshes as command
 from drake_haptics.cli.endings import ExitCode
 from drake_haptics.common.errors import HapticsError
@@ -26,7 +25,7 @@ def end_with(monkeypatch):
             raise error
 
         monkeypatch.setattr(command, "read_mesh", fail)
-        return CliRunner().invoke(main, [*options, "check", "cup.obj"])
+        return invoke(*options, "check", "cup.obj")
 
     return run
 
@@ -69,7 +68,7 @@ def test_debug_shows_where_it_came_from(end_with, monkeypatch, error, how):
 
 
 def test_debug_behind_the_command_is_told_where_it_goes():
-    result = CliRunner().invoke(main, ["check", "cup.obj", "--debug"])
+    result = invoke("check", "cup.obj", "--debug")
     assert result.exit_code == 2
     assert "goes before the command: drake-haptics --debug" in result.stderr
 
@@ -91,7 +90,7 @@ def test_warnings_and_logs_are_a_line_each(monkeypatch):
 
     monkeypatch.setattr(command, "read_mesh", complain)
     before = (warnings.showwarning, list(logging.root.handlers))
-    result = CliRunner().invoke(main, ["check", "cup.obj"])
+    result = invoke("check", "cup.obj")
     assert result.stderr.splitlines() == [
         "Warning: DrakeDeprecationWarning: use Other",
         "Warning: slow mesh",

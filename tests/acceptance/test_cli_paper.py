@@ -5,9 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from click.testing import CliRunner
-
-from drake_haptics.cli import main
+from command_line import invoke
 
 
 @pytest.fixture(scope="module")
@@ -15,7 +13,7 @@ def called(tmp_path_factory):
     folder = tmp_path_factory.mktemp("paper")
     page, data = folder / "here.html", folder / "here.json"
     arguments = ["--quick", "--out", str(page), "--json", str(data), "table1"]
-    result = CliRunner().invoke(main, ["paper", *arguments, "figure12"])
+    result = invoke("paper", *arguments, "figure12")
     assert result.exit_code == 0, result.output
     return result, page, json.loads(data.read_text())
 
@@ -45,23 +43,23 @@ def test_only_the_parts_named_are_made(called):
 
 def test_a_folder_without_any_of_the_meshes_is_told(tmp_path):
     arguments = ["--quick", "--meshes", str(tmp_path), "table1"]
-    result = CliRunner().invoke(main, ["paper", *arguments])
+    result = invoke("paper", *arguments)
     assert result.exit_code == 1
     assert f"Error: the folder {tmp_path} has none of torus_2000.obj" in result.stderr
 
 
 def test_json_on_stdout_is_alone(tmp_path):
     arguments = ["--json", "-", "--out", str(tmp_path / "p.html"), "table1"]
-    result = CliRunner().invoke(main, ["paper", *arguments])
+    result = invoke("paper", *arguments)
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["table1"][0]["model"] == "Torus"
 
 
 def test_a_wrong_call_is_refused_before_anything_is_measured(tmp_path):
     nowhere = str(tmp_path / "no" / "p.html")
-    result = CliRunner().invoke(main, ["paper", "--out", nowhere])
+    result = invoke("paper", "--out", nowhere)
     assert result.exit_code == 1 and "there is no folder" in result.output
-    result = CliRunner().invoke(main, ["paper", "figure13"])
+    result = invoke("paper", "figure13")
     assert result.exit_code == 2 and "figure13" in result.output
 
 

@@ -3,13 +3,13 @@
 import re
 import shutil
 
+import command_line
 import pytest
 import trimesh
 from accuracy_samples import make_study
-from click.testing import CliRunner
 
 from drake_haptics import find_scene, load_scene, make_scene_for_meshes
-from drake_haptics.cli import accuracy, main, stability
+from drake_haptics.cli import accuracy, stability
 from drake_haptics.simulation.replay_log import load_log_scene
 from drake_haptics.tick_log.tick_log import read_tick_log
 
@@ -24,7 +24,7 @@ def invoke(monkeypatch, tmp_path):
     for name in ("pen.obj", "torus.obj"):
         shutil.copy(meshes / name, tmp_path)
     monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(main, list(arguments))
+    return command_line.invoke
 
 
 def test_a_run_is_of_the_changed_scene_and_so_is_its_log(invoke, tmp_path):

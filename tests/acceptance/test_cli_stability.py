@@ -1,17 +1,17 @@
 """`drake-haptics stability` from end to end."""
 
+import functools
 import json
 import re
 from dataclasses import replace
 from pathlib import Path
 
+import command_line
 import pytest
-from click.testing import CliRunner
 from command_line import call
 from held_samples import analyze_sample, make_limits
 
 from drake_haptics.analysis import scene_stability
-from drake_haptics.cli import main
 from drake_haptics.cli import stability as command
 from drake_haptics.simulation.run import RunError
 
@@ -20,9 +20,7 @@ from drake_haptics.simulation.run import RunError
 def invoke(monkeypatch, tmp_path):
     """Runs the command in this process, in a folder of its own."""
     monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(
-        main, ["stability", *map(str, arguments)]
-    )
+    return functools.partial(command_line.invoke, "stability")
 
 
 @pytest.fixture

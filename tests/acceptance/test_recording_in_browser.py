@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command_line import invoke
 from headless_browser import HeadlessBrowser
-
-from drake_haptics.cli import main
 
 DURATION_S = 2.0
 TREE = "viewer.scene_tree.find(['haptics', '{}'])"
@@ -15,11 +13,8 @@ TREE = "viewer.scene_tree.find(['haptics', '{}'])"
 def page(chromium, tmp_path_factory):
     """Two seconds of the cup and the spoon, open in a browser, paused."""
     file = tmp_path_factory.mktemp("recording") / "out.html"
-    result = CliRunner().invoke(
-        main,
-        ["run", "cup_spoon", "--headless", "--duration", str(DURATION_S),
-         "--record", str(file)],
-    )  # fmt: skip
+    run = ["run", "cup_spoon", "--headless", "--duration", DURATION_S]
+    result = invoke(*run, "--record", file)
     assert result.exit_code == 0, result.output
     with HeadlessBrowser(chromium) as browser:
         browser.open(file.as_uri())
@@ -168,7 +163,7 @@ def test_the_legend_tells_of_friction_where_there_is_some(tmp_path):
     for scene, has_friction in [("rubbed_sphere", True), ("sphere_pen", False)]:
         file = tmp_path / f"{scene}.html"
         arguments = ["run", scene, "--headless", "--duration", "0.05"]
-        result = CliRunner().invoke(main, [*arguments, "--record", str(file)])
+        result = invoke(*arguments, "--record", str(file))
         assert result.exit_code == 0, result.output
         assert ("friction that slides" in file.read_text("utf-8")) == has_friction
 

@@ -13,17 +13,14 @@ import subprocess
 import sys
 from contextlib import ExitStack, closing
 
+from library_counts import count_by_library
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit import cockpit
 from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.real_time import RealTimePacer
-from drake_haptics.evaluation.measuring.valgrind import (
-    count_by_library,
-    counted,
-    require_valgrind,
-)
+from drake_haptics.evaluation.measuring.valgrind import counted, require_valgrind
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene

@@ -14,7 +14,9 @@ from __future__ import annotations
 import sys
 from contextlib import ExitStack
 
-from drake_haptics.evaluation.measuring.valgrind import count_by_library, counted
+from library_counts import count_by_library
+
+from drake_haptics.evaluation.measuring.valgrind import counted
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene

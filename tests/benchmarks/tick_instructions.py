@@ -21,6 +21,7 @@ import subprocess
 import sys
 from contextlib import ExitStack
 
+from library_counts import count_by_library
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
@@ -32,11 +33,7 @@ from drake_haptics.evaluation.benchmark.loop.this_package import (
     ThisLoop,
 )
 from drake_haptics.evaluation.benchmark.loop.your_plant import PlantLoop
-from drake_haptics.evaluation.measuring.valgrind import (
-    count_by_library,
-    counted,
-    require_valgrind,
-)
+from drake_haptics.evaluation.measuring.valgrind import counted, require_valgrind
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene

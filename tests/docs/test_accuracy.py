@@ -24,10 +24,9 @@ from accuracy_table import (
     with_errors,
     with_parts,
 )
-from click.testing import CliRunner
+from command_line import invoke
 from page_parts import find_part, read_part
 
-from drake_haptics.cli import main
 from drake_haptics.evaluation.accuracy.knobs import list_settings
 from drake_haptics.evaluation.accuracy.report import COLUMNS
 from drake_haptics.scene.library import find_scene
@@ -119,7 +118,7 @@ def test_commands_that_are_shown_have_options_that_exist() -> None:
         r"^drake-haptics (accuracy .*?)(?: +#.*)?$", ADVICE, re.MULTILINE
     )
     assert len(asked) == 4
-    known = CliRunner().invoke(main, ["accuracy", "--help"]).stdout
+    known = invoke("accuracy", "--help").stdout
     for line in asked:
         for word in shlex.split(line):
             assert not word.startswith("--") or word in known

@@ -18,7 +18,6 @@ from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
 from importlib.metadata import version
 from pathlib import Path, PurePath
-from types import TracebackType
 from typing import Any
 
 from drake_haptics.analysis.jobs.exact_json import to_exact_json
@@ -172,12 +171,7 @@ class StudyStore:
         """Returns itself."""
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Brings all to the disk and closes the file."""
         with self._stream:
             self._stream.flush()

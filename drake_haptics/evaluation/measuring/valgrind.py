@@ -43,7 +43,7 @@ def count_instructions(arguments: Sequence[str]) -> int:
         subprocess.CalledProcessError: the program failed.
         RuntimeError: valgrind counted nothing.
     """
-    said = _run(arguments, "/dev/null")
+    said = run_callgrind(arguments, "/dev/null")
     found = re.search(r"Collected : (\d+)", said)
     if found is None:
         raise RuntimeError(f"valgrind counted nothing:\n{said}")
@@ -68,35 +68,12 @@ def read_data() -> Any:
     return pickle.loads(Path(sys.argv[1]).read_bytes())
 
 
-def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
-    """Counts as `count_instructions` does, by the path of each library.
+def run_callgrind(arguments: Sequence[str], profile: str) -> str:
+    """Runs this Python under callgrind, which writes a profile; returns what it said.
 
     Raises:
         subprocess.CalledProcessError: the program failed.
     """
-    counts: dict[str, int] = {}
-    paths: dict[str, str] = {}
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "profile"
-        _run(arguments, str(file))
-        path, of_callee = "", False
-        for line in file.read_text(errors="replace").splitlines():
-            if named := re.match(r"(c?ob)=\((\d+)\)(?: (.*))?$", line):
-                kind, number, name = named.groups()
-                paths.setdefault(number, name)
-                path = paths[number] if kind == "ob" else path
-            elif line.startswith("calls="):
-                # The next line tells what the callee took, which tells so itself.
-                of_callee = True
-            elif cost := re.match(r"[+*\-\d]\S* (\d+)$", line):
-                if not of_callee:
-                    counts[path] = counts.get(path, 0) + int(cost[1])
-                of_callee = False
-    return counts
-
-
-def _run(arguments: Sequence[str], profile: str) -> str:
-    """Runs this Python under callgrind; returns what that said."""
     command = [
         *("valgrind", "--tool=callgrind", "--instr-atstart=no"),
         *(f"--callgrind-out-file={profile}", sys.executable, *arguments),

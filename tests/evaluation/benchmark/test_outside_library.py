@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command_line import invoke
 
-from drake_haptics.cli import main
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.benchmark.benchmark import BenchFigures, make_tables
 from drake_haptics.evaluation.benchmark.loop.figures import NATIVE, OURS
@@ -162,5 +161,5 @@ def test_a_file_without_a_class_is_told_what_to_do(
     file.write_text(text)
     with pytest.raises(HapticsError, match=words):
         load_library(file)
-    result = CliRunner().invoke(main, ["bench", "pairs", "--library", str(file)])
+    result = invoke("bench", "pairs", "--library", str(file))
     assert result.exit_code == 1 and words in " ".join(result.stderr.split())

@@ -3,11 +3,9 @@
 import shutil
 
 import pytest
+from library_counts import count_by_library
 
-from drake_haptics.evaluation.measuring.valgrind import (
-    count_by_library,
-    count_instructions,
-)
+from drake_haptics.evaluation.measuring.valgrind import count_instructions
 
 pytestmark = pytest.mark.skipif(shutil.which("valgrind") is None, reason="no valgrind")
 _TIMES, _SIZE = 5000, 60 * 60
