@@ -82,7 +82,7 @@ def test_the_page_on_stability_is_readable(browser, tmp_path):
 def test_the_page_on_the_papers_figures_is_readable(browser, tmp_path):
     path = tmp_path / "page.html"
     write_paper_page(make_evaluation(), path)
-    check_page(browser, path, tables=7, pixels=900)
+    check_page(browser, path, tables=8, pixels=900)
     assert browser.evaluate(
         "[...document.querySelectorAll('.mark')].every(m => m.scrollWidth <="
         " m.clientWidth && ['agrees', 'better', 'differs', 'not measured']"

@@ -48,7 +48,8 @@ ConstraintRows::ConstraintRows(
     std::shared_ptr<const Decomposition> tool,
     std::vector<std::shared_ptr<const Decomposition>> objects,
     std::vector<double> skin)
-    : ConstraintRows(BuildTrees(tool, objects), std::move(skin)) {}
+    : ConstraintRows(BuildTrees(std::move(tool), std::move(objects)),
+                     std::move(skin)) {}
 
 ConstraintRows::ConstraintRows(TreedScene scene, std::vector<double> skin)
     : tool_(scene.tool),

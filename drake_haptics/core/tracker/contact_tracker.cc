@@ -1,6 +1,7 @@
 #include "tracker/contact_tracker.h"
 
 #include <chrono>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,11 +20,34 @@ void RequireFinite(const Pose& X, const char* what) {
 
 }  // namespace
 
+TreedScene BuildTrees(
+    std::shared_ptr<const Decomposition> tool,
+    std::vector<std::shared_ptr<const Decomposition>> objects) {
+  if (tool == nullptr) throw std::invalid_argument("the tool is missing");
+  std::map<const Decomposition*, TreedShape> shapes;
+  const auto shape_of = [&](std::shared_ptr<const Decomposition> pieces) {
+    TreedShape& shape = shapes[pieces.get()];
+    if (shape.tree == nullptr) {
+      shape.tree = std::make_shared<PieceBvh>(pieces->pieces);
+      shape.neighbors = std::make_shared<FacetNeighbors>(*pieces);
+      shape.decomposition = std::move(pieces);
+    }
+    return shape;
+  };
+  TreedScene scene{shape_of(std::move(tool)), {}};
+  for (auto& pieces : objects) {
+    if (pieces == nullptr) throw std::invalid_argument("an object is missing");
+    scene.objects.push_back(shape_of(std::move(pieces)));
+  }
+  return scene;
+}
+
 ContactTracker::ContactTracker(
     std::shared_ptr<const Decomposition> tool,
     std::vector<std::shared_ptr<const Decomposition>> objects, double tolerance,
     const DepthSearch& depth)
-    : ContactTracker(BuildTrees(tool, objects), tolerance, depth) {}
+    : ContactTracker(BuildTrees(std::move(tool), std::move(objects)), tolerance,
+                     depth) {}
 
 ContactTracker::ContactTracker(TreedScene scene, double tolerance,
                                const DepthSearch& depth)

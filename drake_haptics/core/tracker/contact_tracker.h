@@ -11,6 +11,19 @@
 
 namespace drake_haptics {
 
+/// A tool and objects with their trees.
+struct TreedScene {
+  TreedShape tool;
+  std::vector<TreedShape> objects;
+};
+
+/// Builds the trees and finds the facets that go on; those that share a
+/// decomposition share both.
+/// @throws std::invalid_argument if a decomposition is missing.
+TreedScene BuildTrees(
+    std::shared_ptr<const Decomposition> tool,
+    std::vector<std::shared_ptr<const Decomposition>> objects);
+
 /// Finds all contacts between a moving tool and many objects, tick after tick,
 /// each starting from the last tick's answer (paper, sections 3 and 5.3.2).
 /// An object costs nothing while the motion since it was last looked at cannot

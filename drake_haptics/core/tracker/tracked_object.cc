@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <tuple>
 
 #include "tracker/surface_entry.h"
@@ -43,29 +40,6 @@ Pose PoseBeforeOf(const PosedPair& pair, double tolerance, const Pose& shared,
 }
 
 }  // namespace
-
-TreedScene BuildTrees(
-    const std::shared_ptr<const Decomposition>& tool,
-    const std::vector<std::shared_ptr<const Decomposition>>& objects) {
-  std::map<const Decomposition*, TreedShape> shapes;
-  const auto shape_of = [&](const std::shared_ptr<const Decomposition>& pieces,
-                            const char* what) {
-    if (pieces == nullptr) {
-      throw std::invalid_argument(std::string(what) + " is missing");
-    }
-    TreedShape& shape = shapes[pieces.get()];
-    if (shape.tree == nullptr) {
-      shape = {pieces, std::make_shared<PieceBvh>(pieces->pieces),
-               std::make_shared<FacetNeighbors>(*pieces)};
-    }
-    return shape;
-  };
-  TreedScene scene{shape_of(tool, "the tool"), {}};
-  for (const auto& pieces : objects) {
-    scene.objects.push_back(shape_of(pieces, "an object"));
-  }
-  return scene;
-}
 
 void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
                           std::vector<Contact>* out) {

@@ -24,19 +24,6 @@ struct TreedShape {
   std::shared_ptr<const FacetNeighbors> neighbors;
 };
 
-/// A tool and objects with their trees.
-struct TreedScene {
-  TreedShape tool;
-  std::vector<TreedShape> objects;
-};
-
-/// Builds the trees and finds the facets that go on; those that share a
-/// decomposition share both.
-/// @throws std::invalid_argument if a decomposition is missing.
-TreedScene BuildTrees(
-    const std::shared_ptr<const Decomposition>& tool,
-    const std::vector<std::shared_ptr<const Decomposition>>& objects);
-
 /// Which depth a pair of pieces in overlap has, and what it may cost.
 struct DepthSearch {
   /// The least one of all (surface_pair.h), not the one walked to from the
