@@ -112,7 +112,14 @@ def check_rendering(
     _check_contact(contact)
     _check_effects(effects)
     if is_constraint(contact):
-        check_constraint_law(contact, effects, sheds_load=False)
+        places = {f"materials[{name!r}]": item for name, item in materials.items()}
+        check_constraint_law(contact, effects, sheds_load=False, materials=places)
+        require(
+            effects.friction is None,
+            "effects.friction",
+            "is not for a body of a plant under contact.law: constraint, whose proxy"
+            " has no friction: take it out, or take contact.law: penalty",
+        )
     for name, material in materials.items():
         _check_material(material, f"materials[{name!r}]", effects)
     if coupling is not None:

@@ -17,7 +17,12 @@ from drake_haptics.bounds.explicit_step import calc_explicit_stiffness
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.rendering.proxy import calc_proxy_gains
-from drake_haptics.scene.schema import ContactParameters, CouplingParameters
+from drake_haptics.scene.schema import (
+    ContactParameters,
+    CouplingParameters,
+    Effects,
+    FrictionParameters,
+)
 from drake_haptics.scene.validation import SceneWarning
 
 SKIN = 3e-4
@@ -253,5 +258,8 @@ def test_what_the_law_does_not_have_is_refused():
     scene.add_slab()
     scene.add("tool", CUBE)
     slow = ContactParameters(law="constraint", query_rate_hz=500.0)
+    scene.finalize()
     with pytest.raises(SceneError, match="query_rate_hz does nothing"):
-        render(scene.finalize(), contact=slow)
+        render(scene, contact=slow)
+    with pytest.raises(SceneError, match=r"effects\.friction.*proxy has no friction"):
+        render(scene, effects=Effects(friction=FrictionParameters()))

@@ -1,3 +1,5 @@
+#include "bind/bind_servo.h"
+
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -7,7 +9,6 @@
 
 #include "bind/bind.h"
 #include "bind/bind_eigen.h"
-#include "bind/bind_servo.h"
 #include "device/servo_law.h"
 #include "tool/handle_model.h"
 

@@ -68,11 +68,11 @@ void SetValues(const Values& values, Vector* vector) {
   }
 }
 
-Pose ValuesOf(const PoseOf<AutoDiff>& X) {
-  return {drake_haptics::ValuesOf(X.R), drake_haptics::ValuesOf(X.p)};
-}
-
 }  // namespace
+
+Pose ValuesOf(const PoseOf<AutoDiff>& X) {
+  return {ValuesOf(X.R), ValuesOf(X.p)};
+}
 
 ContactOf<AutoDiff> DifferentiatePieces(const PairContact& pair,
                                         const PiecePair& pieces,

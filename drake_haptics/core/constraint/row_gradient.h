@@ -7,6 +7,9 @@
 
 namespace drake_haptics {
 
+/// The pose itself.
+Pose ValuesOf(const PoseOf<AutoDiff>& X);
+
 /// The contact of two pieces with derivatives, while features stay
 /// (frozen_features.h).
 /// @param contact in the tool's frame, where tool and object are posed.

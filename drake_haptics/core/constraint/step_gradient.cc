@@ -25,10 +25,6 @@ PoseOf<AutoDiff> Moved(const PoseOf<AutoDiff>& X,
           X.p + motion.tail<3>()};
 }
 
-Pose ValuesOf(const PoseOf<AutoDiff>& X) {
-  return {drake_haptics::ValuesOf(X.R), drake_haptics::ValuesOf(X.p)};
-}
-
 ToolState ValuesOf(const ToolStateOf<AutoDiff>& state) {
   return {drake_haptics::ValuesOf(state.q_WT),
           drake_haptics::ValuesOf(state.V_WT)};
