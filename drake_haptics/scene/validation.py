@@ -228,6 +228,12 @@ def _check_servo_rate(scene: Scene) -> None:
         f"may be more than device.rate_hz ({ticks_per_s:g}) under contact.law:"
         f" constraint alone, and is {rate_hz:g} under '{scene.contact.law}'",
     )
+    require(
+        round(steps) == 1 or scene.effects.friction is None,
+        where,
+        f"is {rate_hz:g}, and a servo does not tell the loop where friction holds the"
+        " tool: take effects.friction out, or this key",
+    )
 
 
 def _check_tick_budget(device: DeviceParameters) -> None:

@@ -80,6 +80,7 @@ def test_the_bounds_are_those_of_its_rate(scene):
         ({"device.servo_rate_hz": "1500"}, "2000 is the nearest"),
         ({"device.servo_rate_hz": "500"}, "1000 is the nearest"),
         ({"device.servo_rate_hz": "-1000"}, "device.servo_rate_hz"),
+        ({"effects.friction": "{}"}, r"servo_rate_hz.*take effects\.friction out"),
     ],
 )
 def test_what_cannot_be_is_refused(scene, change, message):
