@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "convex/flush_features.h"
 #include "convex/normal_cone_support.h"
 #include "pair/gauss_overlay.h"
 #include "pair/pair_contact_builders.h"
@@ -123,7 +124,8 @@ class Query {
   // carry it.
   std::optional<PairContact> Promoted(const PairContact& closest) {
     const Promotion promotion =
-        PromoteClosestPoints(pair_, separation_, request_);
+        PromoteClosestPoints(pair_, separation_, request_,
+                             IsSupported(closest, kFlush), &workspace_.patch);
     ends_early_ = promotion.ends_early;
     if (promotion.facet.support != NormalConeSupport::kSupported) {
       if (promotion.is_beside_wall) return closest;
@@ -138,11 +140,12 @@ class Query {
     return state_.in_contact ? Held(state_.n) : TransferredFrom();
   }
 
-  bool IsSupported(const PairContact& contact) const {
+  bool IsSupported(const PairContact& contact,
+                   double slack = kSurfaceSlack) const {
     return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
                            contact.feature_B,
-                           pair_.X_AB.R.transpose() * contact.n) ==
-           NormalConeSupport::kSupported;
+                           pair_.X_AB.R.transpose() * contact.n,
+                           slack) == NormalConeSupport::kSupported;
   }
 
   bool HasBegun() const { return state_.overlaps && !did_overlap_; }
