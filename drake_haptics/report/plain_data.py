@@ -10,7 +10,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-Figures = TypeVar("Figures")
+_Figures = TypeVar("_Figures")
 
 # These words stand for numbers that JSON lacks.
 _NUMBERS = {"infinite": math.inf, "-infinite": -math.inf, "none": math.nan}
@@ -47,7 +47,7 @@ def name_number(number: float) -> str:
     return "infinite" if number > 0.0 else "-infinite"
 
 
-def read_figures(kind: type[Figures], data: Any) -> Figures:
+def read_figures(kind: type[_Figures], data: Any) -> _Figures:
     """Returns the dataclass that `dataclasses.asdict` made plain data of.
 
     Where a field is a number, null stands for NaN, and so do the words of
@@ -57,7 +57,7 @@ def read_figures(kind: type[Figures], data: Any) -> Figures:
         kind: The dataclass, of dataclasses, lists and tuples of them, and plain data.
         data: The plain data.
     """
-    figures: Figures = _read(kind, data)
+    figures: _Figures = _read(kind, data)
     return figures
 
 

@@ -208,7 +208,9 @@ def test_an_open_input_elsewhere_is_said():
 def test_what_is_no_system_or_no_context_of_it_is_refused(analyze):
     loop, other = make_loop(900.0), make_loop(900.0)
     context = loop.CreateDefaultContext()
-    with pytest.raises(TypeError, match=r"^diagram must be .* it is \.diagram"):
+    with pytest.raises(
+        TypeError, match=r"^diagram must be .* returns one in \.diagram"
+    ):
         analyze(context, loop)
     with pytest.raises(TypeError, match=r"^context must be .*Simulator\.get_context"):
         analyze(loop, Simulator(loop))

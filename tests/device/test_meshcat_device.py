@@ -202,7 +202,7 @@ def test_close_takes_the_controls_away_and_the_force(meshcat, device, clock):
 
 def test_controls_of_the_same_names_are_left_alone(meshcat, clock):
     meshcat.AddSlider("yaw (deg)", -1.0, 1.0, 0.1, 0.5)
-    with pytest.raises(DeviceError, match=r"names yaw \(deg\) already"):
+    with pytest.raises(DeviceError, match=r"already has controls named yaw \(deg\)"):
         MeshcatDevice(meshcat, X_WB=X_WB, X_BH=X_BH, workspace_radius_m=0.1)
     assert meshcat.GetSliderNames() == ["yaw (deg)"]
     assert meshcat.GetSliderValue("yaw (deg)") == 0.5

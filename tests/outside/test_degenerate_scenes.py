@@ -78,7 +78,7 @@ LAWS = {
         bump=0.057,
     ),
     "constraint": Law(
-        ContactParameters(law="constraint"),
+        ContactParameters(law="constraint", skin_m=3e-4),
         # The shapes turn while they move: what a turn takes of the skin is of second
         # order, 10 µm at most (tests/core/constraint).
         lambda contact, case: contact.skin_m - 1e-5,

@@ -79,7 +79,7 @@ def test_spoon_and_cup_at_rest_make_and_take_nothing():
     ]
     haptic = BuildHapticDiagram(scene)
     settled, end = (
-        run(haptic, t, energy=True).to_dict()["energy_J"] for t in (5.0, 8.0)
+        run(haptic, t, energy=True).to_dict()["energy_J"] for t in (8.0, 11.0)
     )
     assert settled["contact"]["stored"] > 1e-4
     for name, part in end.items():
@@ -90,11 +90,11 @@ def test_spoon_and_cup_at_rest_make_and_take_nothing():
 # Beyond what sampling explains, of what goes in, at the contact and at the device.
 MADE = {
     "can_box": (0.0055, 0.0001),
-    "cup_spoon": (0.0909, 0.0171),
+    "cup_spoon": (0.0684, 0.0153),
     "hammer_block": (0.0056, 0.0004),
     "rubbed_sphere": (0.1720, 0.0001),
     "sphere_pen": (0.0071, 0.0001),
-    "torus_peg": (0.1329, 0.0049),
+    "torus_peg": (0.1490, 0.0055),
 }
 
 

@@ -137,7 +137,8 @@ def test_no_limit_is_met_and_no_force_jumps_that_did_not(slow, method, monkeypat
     plain, _ = watch_run(*build("cup_spoon", monkeypatch, budget_us=1e3, **method))
     assert plain[:, 1].max() == 0.0
     largest_N = [find_steps(f_W).max() for f_W in (rows[:, 4:7], plain[:, 4:7])]
-    assert largest_N[0] < 2.0 * largest_N[1]
+    # Among forces of some newtons, no step below half of one is a jump.
+    assert largest_N[0] < 2.0 * max(largest_N[1], 0.5)
 
 
 def test_the_skin_thins_and_thickens_unnoticed(slow):
