@@ -69,6 +69,7 @@ def AddHapticLoop(
     materials: Sequence[Material] | None = None,
     load_shedding: LoadShedding | None = None,
     servo_period_s: float | None = None,
+    in_one_call: bool = True,
 ) -> HapticLoop:
     """Adds the systems of a haptic loop around a device and connects them.
 
@@ -96,6 +97,8 @@ def AddHapticLoop(
         servo_period_s: How often contact is solved between ticks under the constraint
             law, s: by a thread of the device, or in Drake where it is simulated, with
             a port of that period. Defaults to at every tick.
+        in_one_call: Whether the core goes from query to force in one call where no
+            effect stands between; else each system computes its own, to be timed.
 
     Returns:
         The systems.
@@ -121,6 +124,7 @@ def AddHapticLoop(
         materials=(materials, Sequence[Material] | None),
         load_shedding=(load_shedding, LoadShedding | None),
         servo_period_s=(servo_period_s, float | None),
+        in_one_call=(in_one_call, bool),
     )
     if servo_period_s is not None and not is_constraint(contact):
         raise ValueError("servo_period_s is for contact.law: constraint")
@@ -130,7 +134,9 @@ def AddHapticLoop(
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     sheds_load = load_shedding is not None
-    is_chained = not sheds_load and can_chain(objects, contact, effects)
+    is_chained = (
+        in_one_call and not sheds_load and can_chain(objects, contact, effects)
+    )
     if load_shedding is not None:
         builder.AddNamedSystem("load_shedding", load_shedding)
     builder.AddNamedSystem("device", device)

@@ -71,8 +71,10 @@ class ContactChain:
         self._moving = [0, *(1 + i for i, moves in enumerate(moving) if moves)]
         self.context = self.diagram.CreateDefaultContext()
         self._fix(self.diagram, self.context, self.variables(state))
-        # The query learns what is near as that of the state did.
-        self.diagram.get_output_port(0).Eval(self.context)
+        # The query learns what is near as that of the state did, and as often.
+        for _ in range(4):
+            self._fix(self.diagram, self.context, self.variables(state))
+            self.diagram.get_output_port(0).Eval(self.context)
 
     def variables(self, state: State) -> np.ndarray:
         """Pose and velocity (13) of each body that moves."""

@@ -223,7 +223,9 @@ def random_states(
         tracker = _core.SceneTracker(tool, [solid] * num_objects, T)
         for i, q_WO in enumerate(q[1:]):
             tracker.set_object_pose(i, q_WO)
-        tracker.query(q[0])
+        # Deep inside, depth is walked to from tick to tick: let it arrive.
+        for _ in range(4):
+            tracker.query(q[0])
         V = 0.1 * rng.normal(size=(1 + num_objects, 6))
         state = State((tool, *[solid] * num_objects), tracker, method, q, V)
         if (state.contacts().distance < T).any():

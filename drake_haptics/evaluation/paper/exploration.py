@@ -155,6 +155,7 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
         X_HT=X_TH.inverse(),
         X_WT=scenario.path.start,
         period_s=PERIOD_S,
+        in_one_call=False,  # query and force are told apart
     )
     return HapticDiagram(
         diagram=builder.Build(),

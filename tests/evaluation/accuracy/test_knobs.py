@@ -46,6 +46,7 @@ NOT_KNOBS = {
     "device.base": "is where it stands",
     "device.max_force_N": "is what it may show",
     "device.max_torque_Nm": "is what it may show",
+    "device.servo_rate_hz": "is of the constraint law",
     "device.twin": "is what a simulated device has of a real one's faults",
     "hand": "is who holds it, and where it goes",
     "effects.shading.crease_angle_deg": "is which edges are meant to be sharp",
