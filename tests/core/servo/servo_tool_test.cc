@@ -38,7 +38,7 @@ void StepsAsTheStepperDoes() {
     const double height = kRest - 1e-3 + 3e-3 * std::cos(i / 20.0);
     Vec6 V = Vec6::Zero();
     V[5] = -3e-3 / 20.0 * std::sin(i / 20.0) / kPeriod;
-    stepper.Step(state, Above(height), V, kStill, &result);
+    stepper.Step(state, Above(height), V, kStill, {}, &result);
     const LocalWrench wrench = tool.Step(Above(height), V, kStill);
     CHECK(wrench.F == result.F_Ho_W_commanded);
     CHECK(wrench.IsFinite());
