@@ -41,8 +41,8 @@ from .output.tick_log_sink import TickLogSink as TickLogSink
 from .plant.applied_wrenches import AppliedWrenches as AppliedWrenches
 from .plant.body_motions import BodyMotions as BodyMotions
 from .plant.body_of_proxy import BodyOfProxy as BodyOfProxy
+from .tool.constraint_step import ConstraintWrench as ConstraintWrench
 from .tool.constraint_tool_step import ConstraintToolStep as ConstraintToolStep
-from .tool.constraint_tool_step import ConstraintWrench as ConstraintWrench
 from .tool.handle_model import HandleModel as HandleModel
 from .tool.haptic_tool import HapticTool as HapticTool
 from .tool.passivity_control import PassivityControl as PassivityControl

@@ -145,7 +145,8 @@ def _find_room(
 ) -> tuple[NDArray[np.float64], Clearance | None]:
     """Returns the shortest move that keeps all contacts away by what they should be.
 
-    Where there is none, it keeps as much as can be, and the clearance is told.
+    If no move keeps all of it, the move keeps the largest possible share of each
+    distance, and the `Clearance` holds that share.
     """
     n_W, d = contacts.nhat_BA_W, contacts.distance
     stay = np.zeros(3)

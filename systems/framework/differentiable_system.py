@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -149,7 +150,8 @@ class DifferentiableSystem(_Convertible):
     stays one fast call of the core per tick. Events that publish are left out: the
     twin draws and prints nothing.
 
-    What else a system can have, a conversion refuses: another state, numeric
+    A system defines `differentiate` if it has outputs, and `differentiate_update` if it
+    has state. What else a system can have, a conversion refuses: another state, numeric
     parameters, discrete state without one periodic update.
 
     Attributes:
@@ -161,6 +163,7 @@ class DifferentiableSystem(_Convertible):
     undifferentiated: frozenset[str] = frozenset()
     DoGetWitnessFunctions = get_no_witness_functions
 
+    @abstractmethod
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:
         """Returns an output with its derivatives.
 
@@ -173,13 +176,10 @@ class DifferentiableSystem(_Convertible):
             derivatives: it has `num_derivatives`, and `with_variables` where that
             can be zero.
         """
-        raise NotImplementedError(f"{type(self).__name__} has no derivatives of {port}")
 
+    @abstractmethod
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the discrete state after the periodic update, all groups."""
-        raise NotImplementedError(
-            f"{type(self).__name__} has no derivatives of its update"
-        )
 
 
 def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -> None:
@@ -187,6 +187,7 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
 
     Raises:
         ValueError: It says that it has none, or has something that a twin cannot have.
+        TypeError: It lacks a method that a twin would call.
     """
     if hasattr(system, "no_derivatives"):
         raise ValueError(
@@ -208,6 +209,17 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
                 f"{system.GetSystemPathname()} has {what}: no system of type"
                 " AutoDiffXd can be made from it"
             )
+    outputs = [system.get_output_port(i) for i in range(system.num_output_ports())]
+    needed = [
+        system.differentiate
+        for output in outputs
+        if output.get_name() not in system.undifferentiated
+    ]
+    if timing is not None:
+        needed.append(system.differentiate_update)
+    for method in needed:
+        if hasattr(method, "__isabstractmethod__"):
+            raise TypeError(f"{type(system).__name__} must define {method.__name__}")
     for port in map(system.get_input_port, range(system.num_input_ports())):
         if _is_vector(port):
             twin.DeclareVectorInputPort(port.get_name(), port.size())
@@ -223,7 +235,7 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
             timing.offset_sec(),
             lambda context, next_state: _update(twin, system, context, next_state),
         )
-    for output in map(system.get_output_port, range(system.num_output_ports())):
+    for output in outputs:
         inputs = [
             i
             for i in _list_inputs(system)

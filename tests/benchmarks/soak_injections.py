@@ -34,7 +34,7 @@ class Injections:
         _pause(self._hosts.pid, 0.03)
 
     def kill_host(self):
-        """The host is gone without a word, and started anew."""
+        """The host dies without a message and starts again."""
         self._hosts.restart()
 
     def pause_driver(self):

@@ -25,13 +25,13 @@ _TOLERANCE = 1e-2
 
 @dataclass(frozen=True)
 class PressedPlace:
-    """The place where a scene's hand stops, or the reason why there is none.
+    """The place where a scene's hand stops, or why it stops nowhere.
 
     Attributes:
         time_s: When it stops on its path, s; None where the tool rests nowhere.
         near_N_per_m: The scene's own largest stable stiffness there, from which those
             of other settings are not far, N/m.
-        failure_reason: Why there is none; empty where there is one.
+        failure_reason: Why the hand stops nowhere; empty where it stops.
     """
 
     time_s: float | None
@@ -41,7 +41,7 @@ class PressedPlace:
 
 @dataclass(frozen=True)
 class StableStiffness:
-    """The largest stable stiffness of a coupling, or why none is told.
+    """The largest stable stiffness of a coupling, or why it is not known.
 
     Attributes:
         stiffness_N_per_m: N/m; infinite where there is no limit, None where it is not

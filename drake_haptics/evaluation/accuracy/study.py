@@ -86,7 +86,7 @@ class Measurement:
     place: PressedPlace | None
 
     def __call__(self, task: dict[str, Any]) -> dict[str, Any]:
-        """Returns the result, or the reason why there is none.
+        """Returns the result, or the reason for its failure.
 
         Args:
             task: `what` ("errors", "instructions", "native" or "ticks") and the

@@ -151,7 +151,7 @@ def test_a_tool_that_starts_in_an_object_can_be_restarted(page):
 
 
 def test_another_run_at_the_same_port_brings_its_own_picture(page):
-    """As where a run is started anew while its page is open: Meshcat has moved."""
+    """A user starts a second run, and Meshcat moves, while the page is open."""
     stranger = {"hello": {"meshcat": "http://localhost:1/", "scene": "other"}}
     stranger["hello"]["limits"] = {"force_N": 1, "torque_Nm": 1}
     words = f"{{data: {json.dumps(json.dumps(stranger))}}}"

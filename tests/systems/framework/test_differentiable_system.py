@@ -329,18 +329,22 @@ def nothing(context, values):
     """Calculates nothing."""
 
 
-def test_derivatives_that_nobody_wrote_are_an_error():
-    def declare(system):
-        system.DeclareVectorOutputPort("y", 1, nothing, {system.nothing_ticket()})
-        system.DeclareDiscreteState(1)
-        system.DeclarePeriodicDiscreteUpdateEvent(0.1, 0.0, nothing)
+def declare_output(system):
+    system.DeclareVectorOutputPort("y", 1, nothing, {system.nothing_ticket()})
 
-    twin = Bare(declare).ToAutoDiffXd()
-    context = twin.CreateDefaultContext()
-    with pytest.raises(NotImplementedError, match="Bare has no derivatives of y"):
-        twin.GetOutputPort("y").Eval(context)
-    with pytest.raises(NotImplementedError, match="Bare has no derivatives of its up"):
-        twin.EvalUniquePeriodicDiscreteUpdate(context)
+
+def declare_state(system):
+    system.DeclareDiscreteState(1)
+    system.DeclarePeriodicDiscreteUpdateEvent(0.1, 0.0, nothing)
+
+
+@pytest.mark.parametrize(
+    ("declare", "method"),
+    [(declare_output, "differentiate"), (declare_state, "differentiate_update")],
+)
+def test_a_system_without_derivatives_is_not_converted(declare, method):
+    with pytest.raises(TypeError, match=f"Bare must define {method}$"):
+        Bare(declare).ToAutoDiffXd()
 
 
 def declare_two_rates(system):
