@@ -84,6 +84,8 @@ def describe_link(link: LinkStatus) -> str:
         words += f", {link.rejected} refused"
     if link.lateness_s is not None:
         words += f", servo {describe_lateness(link.lateness_s)}"
+    if link.solved:
+        words += f", {link.solved_late} of {count(link.solved, 'contact step')} late"
     return words
 
 
@@ -100,6 +102,11 @@ def describe_device(figures: Mapping[str, Any]) -> str:
             0,
             f"{count(figures['received'], 'reading')}, {figures['lost']} lost,"
             f" {figures['rejected']} refused",
+        )
+    if figures["solved"]:
+        words.append(
+            f"{figures['solved_late']} of"
+            f" {count(figures['solved'], 'contact step')} of its servo late"
         )
     return "; ".join(words)
 

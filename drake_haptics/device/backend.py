@@ -118,12 +118,16 @@ class LinkStatus:
         rejected: What came and was refused: damaged, old, foreign.
         lateness_s: p50, p99 and p99.9 of how late the backend's own thread acted
             after its deadline, s; None where it has none.
+        solved: How often that thread solved contact; 0 where it does not.
+        solved_late: How often that took longer than its period.
     """
 
     received: int = 0
     lost: int = 0
     rejected: int = 0
     lateness_s: tuple[float, float, float] | None = None
+    solved: int = 0
+    solved_late: int = 0
 
 
 class DeviceError(HapticsError):

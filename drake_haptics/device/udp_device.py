@@ -140,6 +140,7 @@ class UdpDevice(DeviceBackend):
     def get_link_status(self) -> LinkStatus:
         """Returns the state of the connection to the device."""
         status = self._servo.status()
+        contact = None if self._contact is None else self._contact.status()
         return LinkStatus(
             received=status.received,
             lost=status.lost,
@@ -148,6 +149,8 @@ class UdpDevice(DeviceBackend):
             + status.damaged
             + status.not_finite,
             lateness_s=self._servo.lateness_s() if status.received else None,
+            solved=0 if contact is None else contact.num_solved,
+            solved_late=0 if contact is None else contact.num_late,
         )
 
 

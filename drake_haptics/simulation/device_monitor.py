@@ -96,7 +96,8 @@ class DeviceWatch:
         `faults` (how often, by kind), `recoveries`,
         `max_force_N` and `max_torque_Nm` (that the device said it showed), `received`,
         `lost` and `rejected` (readings), `servo_lateness_us` (of the backend's own
-        thread, `p50`, `p99`, `p99_9`; empty where it has none).
+        thread, `p50`, `p99`, `p99_9`; empty where it has none), `solved` and
+        `solved_late` (how often that thread solved contact, and was late with it).
         """
         link, reading = self._backend.get_link_status(), self._backend.read()
         late_us = [1e6 * late_s for late_s in link.lateness_s or ()]
@@ -113,4 +114,6 @@ class DeviceWatch:
             "servo_lateness_us": dict(
                 zip(("p50", "p99", "p99_9"), late_us, strict=False)
             ),
+            "solved": link.solved,
+            "solved_late": link.solved_late,
         }

@@ -34,13 +34,18 @@ def test_the_link_tells_what_went_wrong_only():
     assert describe_link(LinkStatus(1000, 3)) == "3 lost"
     words = describe_link(LinkStatus(1000, 0, 7, (1e-5, 1e-4, 1e-3)))
     assert words == "0 lost, 7 refused, servo 0.01/0.10/1.00 ms"
+    solving = LinkStatus(1000, solved=4000, solved_late=12)
+    assert describe_link(solving) == "0 lost, 12 of 4,000 contact steps late"
 
 
 def test_faults_are_counted_by_name_and_a_link_only_where_there_is_one():
     figures = {"faults": {}, "received": 0, "lost": 0, "rejected": 0}
     figures |= {"max_force_N": 2.5, "max_torque_Nm": 0.12}
+    figures |= {"solved": 0, "solved_late": 0}
     assert describe_device(figures) == "showed at most 2.50 N, 120 mN·m; faults: none"
     figures["faults"] = {"STALE": 2, "OVERSPEED": 1}
     assert describe_device(figures).endswith("; faults: 2 stale, 1 overspeed")
     figures["received"] = 1000
     assert describe_device(figures).startswith("1,000 readings, 0 lost, 0 refused; ")
+    figures |= {"solved": 1, "solved_late": 1}
+    assert describe_device(figures).endswith("; 1 of 1 contact step of its servo late")

@@ -154,6 +154,9 @@ def test_the_servos_tool_is_the_loops(scene, driver):
             ),
             rig,
         )
+        link = rig.backend.get_link_status()
+        assert link.solved > 0
+        assert 0 <= link.solved_late <= link.solved
         # It presses with more than this host allows.
         assert np.linalg.norm(command.F_Ho_B[3:]) <= 2.0 * (1 + 1e-12)
         # The device is lost; then it is recovered, and pushed again.
@@ -176,6 +179,7 @@ def test_the_servos_tool_is_the_loops(scene, driver):
         rig.haptic = BuildHapticDiagram(scene, device=rig.backend)
         rig.simulator = make_simulator(rig.haptic)
         rig.simulator.Initialize()
+        assert rig.backend.get_link_status().solved == 0
         rig.X_BH[6] = PLATE_TOP + ABOVE
         wait_for(lambda command, _: np.linalg.norm(command.F_Ho_B[3:]) < 0.1, rig)
         rig.X_BH[6] = PLATE_TOP + PRESS
