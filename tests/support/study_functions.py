@@ -10,6 +10,7 @@ from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass
 
 import numpy as np
+from joblib.externals.loky import process_executor
 
 from drake_haptics.analysis.jobs.exact_json import to_exact_json
 from drake_haptics.analysis.jobs.pool import SerialExecutor
@@ -114,3 +115,10 @@ class BrokenPool(SerialExecutor):
             raise BrokenExecutor("gone")
         self._left -= 1
         return super().submit(fn)
+
+
+def outgrow(task: int) -> int:
+    """Returns the number of the process, after making it too large for its pool."""
+    process_executor._MAX_MEMORY_LEAK_SIZE = -(10**12)
+    process_executor._MEMORY_LEAK_CHECK_DELAY = -1.0
+    return os.getpid()

@@ -6,6 +6,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
@@ -51,12 +52,16 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
         initializer=_start_worker,
         initargs=(os.getpid(),),
     )
-    try:
-        yield pool
-    except BaseException:
-        pool.shutdown(kill_workers=True)  # nobody waits for what the workers are at
-        raise
-    pool.shutdown()
+    # Loky ends a worker that has grown by 300 MB, and starts another. Workers grow, as
+    # pydrake never frees a diagram with systems in Python, and no task is lost.
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "A worker stopped while some jobs")
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(kill_workers=True)  # nobody waits for what the workers are at
+            raise
+        pool.shutdown()
 
 
 def explain_broken_pool() -> str:

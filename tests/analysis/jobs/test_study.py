@@ -23,6 +23,7 @@ from study_functions import (
     as_bits,
     calc_matrix_figures,
     empty_list,
+    outgrow,
     square,
     sum_of_squares,
 )
@@ -52,6 +53,12 @@ def test_results_are_in_the_order_of_the_tasks_whoever_finishes_first():
     tasks = [0.05, 0.0, 0.02, 0.0]
     with ThreadPoolExecutor(4) as threads:
         assert run_study(wait, tasks, executor=threads) == tasks
+
+
+def test_workers_that_have_grown_are_replaced_without_a_word(recwarn):
+    processes = run_study(outgrow, range(12))
+    assert len(set(processes)) > os.cpu_count()
+    assert not [str(warning.message) for warning in recwarn]
 
 
 def test_processes_threads_and_one_thread_agree_bit_for_bit():
