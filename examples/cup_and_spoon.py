@@ -28,9 +28,8 @@ clock = RealTimePacer(haptic.period_s)
 statistics = RunStatistics(haptic.period_s, pace=clock)
 with suppress(KeyboardInterrupt):
     run(haptic, duration_s, pace=clock, statistics=statistics)
-figures = statistics.to_dict()
-print(f"Largest force {figures['max_force_N']:.2f} N, on the device's display.")
-median_us = figures["tick_us"]["median"]
+print(f"Largest force {statistics.max_force_N:.2f} N, on the device's display.")
+median_us = statistics.tick_us.median
 print(
-    f"{figures['ticks']} ticks of {median_us:.0f} µs; {clock.skipped} lost to stalls."
+    f"{statistics.ticks} ticks of {median_us:.0f} µs; {clock.skipped} lost to stalls."
 )

@@ -13,8 +13,8 @@ print("stiffness N/m   largest force N   penetration mm")
 for stiffness_N_per_m in (2e4, 2e3, 5e2):
     scene = load_scene(find_scene("torus_peg"))
     scene.contact.stiffness_N_per_m = stiffness_N_per_m
-    figures = run(BuildHapticDiagram(scene), duration_s=2.0).to_dict()
+    result = run(BuildHapticDiagram(scene), duration_s=2.0)
     print(
-        f"{stiffness_N_per_m:13.0f} {figures['max_force_N']:17.2f}"
-        f" {1e3 * figures['max_penetration_m']:16.3f}"
+        f"{stiffness_N_per_m:13.0f} {result.max_force_N:17.2f}"
+        f" {1e3 * result.max_penetration_m:16.3f}"
     )
