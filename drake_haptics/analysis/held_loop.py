@@ -41,6 +41,7 @@ from drake_haptics.scene.schema import (
     Waypoint,
 )
 from drake_haptics.simulation.live_values import write_live_values
+from drake_haptics.simulation.transfer_state import release_diagram
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.simulated_arm import (
     UnreachableError,
@@ -281,7 +282,10 @@ class CouplingGrowth:
         """
         held = _hold_once(self.scene, self.time_s)
         coupling = replace_gains(self.scene.coupling, stiffness, damping)
-        return {"spectral_radius": analyze_held_scene(held, coupling).growth}
+        loop = analyze_held_scene(held, coupling)
+        growth = loop.growth
+        release_diagram(loop.haptic)
+        return {"spectral_radius": growth}
 
 
 # One scene at a time: a diagram that Python systems are part of is never freed.

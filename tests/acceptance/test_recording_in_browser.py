@@ -55,7 +55,7 @@ def test_everything_is_in_the_scene_tree(page):
 def test_the_picture_is_not_blank(page):
     pixels = seek(page, 1.0)
     middle = pixels[150:550, 300:700]
-    # The cup is grey and the spoon orange: many colors, some of them warm.
+    # The cup is gray and the spoon orange: many colors, some of them warm.
     assert len(np.unique(middle.reshape(-1, 3), axis=0)) > 100
     assert np.mean(middle[..., 0] - middle[..., 2] > 60) > 0.005
 

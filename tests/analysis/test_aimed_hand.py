@@ -1,4 +1,4 @@
-"""A hand that is aimed anew presses the tool as before, whatever the gains."""
+"""A hand that is aimed again presses the tool as before, whatever the gains."""
 
 from dataclasses import replace
 

@@ -64,7 +64,7 @@ def test_the_order_of_points_does_not_matter(growth):
     forwards = {point: growth(*point) for point in points}
     backwards = {point: growth(*point) for point in reversed(points)}
     assert forwards == backwards
-    # Another scene in between, and held anew.
+    # Another scene in between; then this one is held again.
     CouplingGrowth(growth.scene, 1.0)(800.0, 2.0)
     assert {point: growth(*point) for point in points} == forwards
 

@@ -1,4 +1,4 @@
-"""A scene for two meshes of one's own: it must simply run."""
+"""A scene for two meshes of a user: it must simply run."""
 
 import numpy as np
 import pytest

@@ -19,7 +19,7 @@ class StateWatch:
         states: How many came.
         over_limit: How many showed more than the limits they tell, or anything at all
             without being active.
-        not_finite: How many told a number that is none.
+        not_finite: How many had a value that is not finite.
         faults: How often the device went to fault, by kind.
         max_force_N: Largest force shown, N.
         max_torque_Nm: Largest torque, N·m.

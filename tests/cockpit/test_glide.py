@@ -1,7 +1,7 @@
 """What a hand on a device feels does not step, whatever is asked on the page.
 
 Each of these was a kick: a stiffness typed at once brought the force to the device's
-limit in a tick, and a scene begun anew with the handle in a wall shot the tool out.
+limit in a tick, and a scene begun again with the handle in a wall shot the tool out.
 """
 
 import dataclasses

@@ -88,7 +88,7 @@ from drake_haptics.systems import HapticDevice
 
 
 class Still(DeviceBackend):
-    """A device of one's own."""
+    """A user's device."""
 
     def read(self) -> DeviceReading | None:
         """Returns where it is."""

@@ -1,4 +1,4 @@
-"""A device of one's own in a scene: where it stands, and that the loop closes."""
+"""A user's device in a scene: where it stands, and that the loop closes."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""A device of one's own in a plant of one's own."""
+"""A user's device in a user's plant."""
 
 import numpy as np
 import pytest

@@ -13,6 +13,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 CODE = ("drake_haptics", "systems", "models", "examples")
+# Where prose is held to the words below, too.
+MORE_CODE = ("tests", "docs")
 # In the package these are links, or files of text where a system has no links.
 LINKS = {"drake_haptics/systems", "drake_haptics/models"}
 # A first line says what a module is or does; an indirect question says neither.
@@ -41,11 +43,11 @@ _FENCE = re.compile(r"^ *(```|~~~).*?^ *\1[^\n]*$", re.M | re.S)
 _SPAN = re.compile(r"(`+)[^`]+\1")
 
 
-def list_files(*suffixes: str) -> list[Path]:
+def list_files(*suffixes: str, folders: Iterable[str] = CODE) -> list[Path]:
     """The sources with one of these suffixes, and no file that a program wrote."""
     return [
         path
-        for folder in CODE
+        for folder in folders
         for path in sorted((ROOT / folder).rglob("*"))
         if path.suffix in suffixes
         and not any(path.is_relative_to(ROOT / link) for link in LINKS)
@@ -124,7 +126,7 @@ def test_the_first_line_of_a_module_says_what_it_is_or_does():
 @pytest.mark.parametrize("suffixes", [(".py",), (".cc", ".h", ".c", ".js", ".css")])
 def test_docstrings_and_comments_have_words_that_readers_know(suffixes):
     find_prose = find_python_prose if ".py" in suffixes else find_comments
-    files = list_files(*suffixes)
+    files = list_files(*suffixes, folders=(*CODE, *MORE_CODE))
     assert len(files) > 100
     assert find_offenders(files, find_prose) == []
 

@@ -1,4 +1,4 @@
-"""Presets: those that are shipped, and a file of one's own."""
+"""Presets: those that are shipped, and a user's file."""
 
 import numpy as np
 import pytest

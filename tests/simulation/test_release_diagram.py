@@ -1,4 +1,4 @@
-"""However often a run is built anew, only what runs is kept."""
+"""However often a run is built, only what runs is kept."""
 
 import gc
 import weakref

@@ -66,5 +66,5 @@ def contacts_at(points: object, depths: object, tolerance: float) -> _core.Conta
 
 
 def shipped(name: str) -> _core.ConvexPieces:
-    """A mesh that comes along, in pieces."""
+    """A mesh of the package, in pieces."""
     return decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core

@@ -1,7 +1,7 @@
 """Contact states at random, and the chain from poses to wrenches as a function.
 
 What the derivatives of the chain are held against: functions of doubles that ask the
-query anew at each displaced pose.
+query again at each displaced pose.
 """
 
 from __future__ import annotations

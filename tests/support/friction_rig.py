@@ -98,7 +98,7 @@ class FrictionRig:
         self.memory = tick.friction.next_state
 
     def forget(self) -> None:
-        """Lets friction begin anew."""
+        """Forgets where friction sticks."""
         self.memory = np.zeros(self._model.state_size)
 
     def advance(self, F_To_W: object = (0,) * 6, K: object = None) -> Tick:

@@ -64,5 +64,5 @@ def read_site(folder: Path) -> dict[Path, Page]:
 
 
 def is_elsewhere(address: str) -> bool:
-    """Whether an address is on another host, or is none of a file."""
+    """Whether an address is on another host, or does not name a file."""
     return bool(urlsplit(address).scheme or urlsplit(address).netloc)

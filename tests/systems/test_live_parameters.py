@@ -95,7 +95,7 @@ def write(chain, name, value):
 
 
 def calc_elastic_force(state, gains, rule):
-    """Returns the force (3,) on the tool at rest, by the law on contacts found anew."""
+    """Returns the force (3,) on the tool at rest, of contacts that are found again."""
     tracker = copy.deepcopy(state.tracker)
     tracker.tolerance = rule.tolerance_m
     contacts = tracker.query(state.q[0])

@@ -225,7 +225,7 @@ def test_a_fault_stays_until_it_is_recovered(driver, servo):
     wait_until(lambda: not driver.exchange(gate=FAULT).enable)
     assert driver.exchange(gate=IDLE, fault=0).enable
     command = driver.exchange(gate=ACTIVE)
-    assert 0.0 < command.F_Ho_B[3] < 0.5  # engages anew
+    assert 0.0 < command.F_Ho_B[3] < 0.5  # engages again
 
 
 def test_a_driver_that_was_restarted_is_not_enabled(driver, servo):

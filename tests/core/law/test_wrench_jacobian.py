@@ -1,6 +1,6 @@
 """Test the wrench's derivatives against differences of the whole chain.
 
-A difference asks the query anew at each displaced pose. Where it answers with other
+A difference asks the query again at each displaced pose. Where it answers with other
 features, or other contacts push, there is no derivative to compare with.
 """
 

@@ -72,7 +72,7 @@ def test_the_global_depth_of_two_solids_is_that_of_a_pair(
             tracker = ContactTracker(A, B, T, depth="global")
             pair = ConvexPair(polytope(A), polytope(B), depth="global")
             for k in range(12):
-                # Two of three from where the last one was: on a way, not anew.
+                # Two of three go on from the last one; the third starts elsewhere.
                 if k % 3 == 0:
                     q_WA = turned(0.004 * rng.normal(size=3), rng.normal(size=3))
                     tracker.reset()

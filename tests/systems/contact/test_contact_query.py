@@ -166,7 +166,7 @@ def test_its_twin_knows_what_the_query_learnt(tool):
     np.testing.assert_allclose(
         twin_at(twin, of_twin, q_WT).value.distance, expected.distance, atol=1e-12
     )
-    # Without the hint it starts anew, and leaves by the nearer side.
+    # Without the hint it starts from nothing, and leaves by the nearer side.
     anew = twin_at(twin, twin.CreateDefaultContext(), q_WT).value
     assert anew.nhat_BA_W[0, 2] == pytest.approx(-1.0)
 

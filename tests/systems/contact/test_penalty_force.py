@@ -154,7 +154,7 @@ def states():
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("moving", [(True, True), (False, True)])
 def test_a_diagram_from_poses_to_forces_has_its_derivatives(states, method, moving):
-    """By all poses and velocities that have ports, each query asked anew."""
+    """By all poses and velocities that have ports, where each query is asked again."""
     checked = 0
     for state in states[method]:
         if not keeps_features(state, REACH * STEP):

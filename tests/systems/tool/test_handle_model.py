@@ -1,4 +1,4 @@
-"""The slopes of the wrench on a handle, against the tool's equilibrium found anew."""
+"""The slopes of the wrench on a handle, against the tool's equilibrium at each pose."""
 
 from __future__ import annotations
 
