@@ -65,7 +65,7 @@ FIGURES = (
     _table("verification/wrenches", "wrench", 1),
     _table("verification/hard-cases", "hard_cases", 3),
     _table("verification/sliding", "sliding", 2),
-    _table("concepts", "law", 1),
+    _table("verification/contact-laws", "law", 4),
     _table("gradients", "gradient", 5),
     _table("gradients", "loop_gradient", 2),
     _table("device-twin", "twin", 5),

@@ -157,42 +157,67 @@ class Tick:
     F_coupling_W: np.ndarray  # (6,) N·m, N, on the tool at To
 
 
-def run_press(
-    press: Press, tool: PressTool, solid: _core.ConvexPieces, gains: Gains
-) -> Iterator[Tick]:
-    """Runs a press tick by tick, wired as by `AddHapticLoop`."""
-    tracker = _core.SceneTracker(tool.core, [solid], gains.tolerance_m)
-    zeros3, zeros6 = np.zeros((1, 3)), np.zeros((1, 6))
-    q_WH = press.q_WH(0.0, 0.0)
-    state = np.concatenate([q_WH, np.zeros(6)])
-    script = _script(press)
-    phase, next_q_WH = next(script)
-    while True:
-        V_WH = np.concatenate([np.zeros(3), (next_q_WH[4:] - q_WH[4:]) / PERIOD_S])
-        q_WH = next_q_WH
-        contacts = tracker.query(state[:7])
+class PenaltyLoop:
+    """Steps a tool by a handle against the springs of a solid, as `AddHapticLoop` does.
+
+    Attributes:
+        state: Pose and velocity (13,) of the tool after the last tick.
+        q_WH: Pose (7,) of the handle at the last tick.
+    """
+
+    def __init__(
+        self,
+        tool: PressTool,
+        solid: _core.ConvexPieces,
+        gains: Gains,
+        q_WT: np.ndarray,
+    ) -> None:
+        self.state = np.concatenate([q_WT, np.zeros(6)])
+        self.q_WH = np.array(q_WT, dtype=float)
+        self._gains = gains
+        self._dynamics = tool.dynamics
+        self._tracker = _core.SceneTracker(tool.core, [solid], gains.tolerance_m)
+
+    def tick(self, q_WH: np.ndarray, phase: str = "in") -> Tick:
+        """Advances by a tick in which the handle does not turn."""
+        state, gains = self.state, self._gains
+        V_WH = np.concatenate([np.zeros(3), (q_WH[4:] - self.q_WH[4:]) / PERIOD_S])
+        self.q_WH = q_WH.copy()
+        contacts = self._tracker.query(state[:7])
         clusters = _core.share_stiffness(contacts, gains.tolerance_m)
         contact = _core.penalty_force(
             clusters,
             state[4:7],
             state[7:],
-            zeros3,
-            zeros6,
+            np.zeros((1, 3)),
+            np.zeros((1, 6)),
             np.array([gains.stiffness_N_per_m]),
             np.array([gains.damping_Ns_per_m]),
         ).wrench_model
         coupling = coupling_wrench(q_WH, V_WH, _REST, state[:7], state[7:], COUPLING)[
             :78
         ]
-        yield Tick(phase, q_WH, state, contacts, clusters, contact[:6], coupling[:6])
-        state = tool.dynamics.step(state, contact + coupling, PERIOD_S)
+        self.state = self._dynamics.step(state, contact + coupling, PERIOD_S)
+        return Tick(phase, q_WH, state, contacts, clusters, contact[:6], coupling[:6])
+
+
+def run_press(
+    press: Press, tool: PressTool, solid: _core.ConvexPieces, gains: Gains
+) -> Iterator[Tick]:
+    """Runs a press tick by tick."""
+    loop = PenaltyLoop(tool, solid, gains, press.q_WH(0.0, 0.0))
+    script = move_handle(press)
+    phase, q_WH = next(script)
+    while True:
+        tick = loop.tick(q_WH, phase)
+        yield tick
         try:
-            phase, next_q_WH = script.send(float(np.linalg.norm(coupling[3:6])))
+            phase, q_WH = script.send(float(np.linalg.norm(tick.F_coupling_W[3:])))
         except StopIteration:
             return
 
 
-def _script(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
+def move_handle(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
     """The handle's poses: in, perhaps along the surface, hold, out, away.
 
     Is sent the coupling's force after each, N.

@@ -69,10 +69,8 @@ def judge(
     forces = np.array([t.F_contact_W for t in ticks])
     if not (np.isfinite(states).all() and np.isfinite(forces).all()):
         return Verdict(finite=False)
-    silent = np.flatnonzero(np.linalg.norm(forces[:, 3:], axis=1) < 1e-9)
-    step = max(1, len(silent) // 100)
-    lost_tick = next((int(i) for i in silent[::step] if overlap(states[i, :7])), -1)
-    if lost_tick < 0 and len(silent) == len(ticks):
+    lost_tick = find_lost_tick(states, forces, overlap)
+    if lost_tick < 0 and not forces[:, 3:].any():
         return Verdict(skipped="no contact")
     verdict = Verdict(lost_tick=lost_tick)
     pressed = np.array([t.phase in ("in", "slide", "hold") for t in ticks])
@@ -86,16 +84,41 @@ def judge(
     probe = np.array([rotation_of(s) @ press.p_TP + s[4:7] for s in states[pressed]])
     # Springs as soft as some let the tool sink through a thin wall.
     spring_m = LARGEST_FORCE_N / gains.stiffness_N_per_m - gains.tolerance_m
-    sunk_m = (probe[-1] - press.p_W) @ -press.nhat_W
-    verdict.through = bool(
-        sunk_m > spring_m + _BELOW_SPRING_M and solid.is_pierced(probe[::8])
-    )
+    verdict.through = is_through(press, probe, solid, spring_m)
     # A handle that slid along a hollow ends in the wall: nothing to say there.
     end = _core.SceneTracker(tool.core, [pieces], gains.tolerance_m)
     if len(end.query(ticks[-1].q_WH)) == 0:
         gap_W = states[-1][4:7] - ticks[-1].q_WH[4:]
         verdict.hooked_m = float(np.linalg.norm(gap_W))
     return verdict
+
+
+def find_lost_tick(states: np.ndarray, forces: np.ndarray, overlap: Overlap) -> int:
+    """The first tick on which tool and solid overlap and nothing pushes; -1 if none.
+
+    Args:
+        states: (n, 7) or (n, 13), pose of the tool first.
+        forces: (n, 6), torque and force of contact on it, N·m and N.
+        overlap: Of tool and solid.
+    """
+    silent = np.flatnonzero(np.linalg.norm(forces[:, 3:], axis=1) < 1e-9)
+    step = max(1, len(silent) // 100)
+    return next((int(i) for i in silent[::step] if overlap(states[i, :7])), -1)
+
+
+def is_through(
+    press: Press, probe: np.ndarray, solid: Surface, spring_m: float
+) -> bool:
+    """Whether the tool's foremost point left the solid by the far side.
+
+    Args:
+        press: What was done.
+        probe: (n, 3) that point while the tool was pressed, m.
+        solid: The surface.
+        spring_m: How deep the contact's spring lets the largest force press, m.
+    """
+    sunk_m = (probe[-1] - press.p_W) @ -press.nhat_W
+    return bool(sunk_m > spring_m + _BELOW_SPRING_M and solid.is_pierced(probe[::8]))
 
 
 def _judge_normals(

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import trimesh
 from constraint_rig import PERIOD_S, REST, SKIN_M, ConstraintLoop, run_press
+from peg_and_hole import peg_and_hole, solid_of
 from press_rig import START_M, sample_presses
 from press_tools import MODELS, PressTool, hull_mesh, make_tool, make_tools
 from scipy.spatial.transform import Rotation
 from slide_scenes import TOP_M, fifty_pieces
 
-from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.mesh import load_mesh
 
 SIGNS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
 
@@ -22,11 +22,6 @@ SIGNS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
 def tools() -> dict[str, PressTool]:
     edge_on = make_tool(hull_mesh(SIGNS * [5e-4, 0.01, 0.01]), [[0, 0, -1]])
     return {**make_tools(), "edge-on plate": edge_on}
-
-
-def solid_of(mesh: trimesh.Trimesh) -> _core.ConvexPieces:
-    surface = Mesh.from_arrays(mesh.vertices, mesh.faces.astype("i4"))
-    return decompose(surface, cache=False).core
 
 
 def lowest(tool: PressTool) -> float:
@@ -74,17 +69,6 @@ def test_nothing_passes_a_wall_of_a_twentieth_of_a_millimeter(
         assert result.is_apart and not result.is_bounded
         assert result.least_distance_m > SKIN_M - 2e-6
     assert result.F_Ho_W_commanded[5] == pytest.approx(16.2, rel=0.01)
-
-
-def peg_and_hole(play_m: float) -> tuple[PressTool, _core.ConvexPieces]:
-    """A peg of 24 sides, 20 mm long, and a hole that much wider on each side."""
-    sides, radius = 24, 5e-3
-    turn = 2 * np.pi * np.arange(sides) / sides
-    ring = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    ends = [np.column_stack([ring, np.full(sides, z)]) for z in (-0.01, 0.01)]
-    inner = radius + play_m / np.cos(np.pi / sides)
-    hole = trimesh.creation.annulus(inner, 0.015, 0.02, sections=sides)
-    return make_tool(hull_mesh(np.concatenate(ends)), [[0, 0, -1]]), solid_of(hole)
 
 
 @pytest.mark.parametrize("play", [1.0, 1.1, 1.2, 2.0])
