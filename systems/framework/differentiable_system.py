@@ -210,16 +210,16 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
                 " AutoDiffXd can be made from it"
             )
     outputs = [system.get_output_port(i) for i in range(system.num_output_ports())]
-    needed = [
-        system.differentiate
+    needed = {
+        "differentiate"
         for output in outputs
         if output.get_name() not in system.undifferentiated
-    ]
+    }
     if timing is not None:
-        needed.append(system.differentiate_update)
-    for method in needed:
-        if hasattr(method, "__isabstractmethod__"):
-            raise TypeError(f"{type(system).__name__} must define {method.__name__}")
+        needed.add("differentiate_update")
+    for method in sorted(needed):
+        if hasattr(getattr(system, method), "__isabstractmethod__"):
+            raise TypeError(f"{type(system).__name__} must define {method}")
     for port in map(system.get_input_port, range(system.num_input_ports())):
         if _is_vector(port):
             twin.DeclareVectorInputPort(port.get_name(), port.size())
