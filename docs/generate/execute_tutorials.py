@@ -4,7 +4,7 @@
 
 All of them where none is named. Needs nbclient and ipykernel, of `drake_haptics[test]`.
 The notebooks are kept with their outputs, so that they can be read without running;
-tests/acceptance/test_tutorials.py runs them anew and compares.
+tests/acceptance/test_tutorials.py runs them again and compares.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def execute(notebook: nbformat.NotebookNode) -> None:
         resources={"metadata": {"path": str(FOLDER)}},
     )
     with tempfile.TemporaryDirectory() as folder:
-        # Sockets in a folder of one's own: no ports, and nobody who reads along.
+        # Sockets in a private folder: no ports, and no other reader.
         manager = client.create_kernel_manager()
         manager.transport = "ipc"
         manager.connection_file = str(Path(folder) / "kernel.json")
