@@ -36,7 +36,7 @@ class Key:
         name: Its last part.
         type_words: What stands behind it, for people.
         unit: SI, with degrees and microseconds where the name says so; may be empty.
-        default: As it would be written; empty where there is none.
+        default: As it would be written; empty without a default.
         text: What the docstring says of it.
     """
 

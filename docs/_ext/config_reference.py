@@ -1,4 +1,4 @@
-"""The directive that describes all keys of a kind of file.
+"""The directive that describes all keys of scene or device files.
 
 In a page, ::
 

@@ -57,7 +57,7 @@ class Costs:
     """What was counted and timed.
 
     Attributes:
-        bare: Instructions per tick of the whole loop without effects, counted today.
+        bare: Instructions per tick of the whole loop without effects, counted again.
         forbidden: The same with what belongs to effects taken away.
         control: The same with as much else taken away.
         loop: Instructions per tick of the whole loop, by its effect.

@@ -181,7 +181,7 @@ def _flat_blocks() -> dict[tuple[str, int], np.ndarray]:
 
 
 def _largest(errors: dict[tuple[str, int], float]) -> dict[str, float]:
-    """The largest of each part that is told in all units."""
+    """Returns the largest of each part that has figures in all units."""
     return {
         name: max(errors[name, i] for i in range(len(blocks)))
         for name, blocks in BLOCKS.items()

@@ -93,7 +93,7 @@ def _open(browser: HeadlessBrowser, url: str) -> Page:
 
 
 def _show(page: Page, time_s: float) -> None:
-    """Waits until the page shows a time: what it is told faster, it may miss."""
+    """Waits until the page shows a time: what it is sent faster, it may miss."""
     # Rounded as the page does it: where two are as near, Python takes the even one.
     page.wait_for(
         f"document.getElementById('time').textContent == ({time_s!r}).toFixed(1) + ' s'"

@@ -63,7 +63,7 @@ def _connect(url: str) -> ClientConnection:
 
 
 def _listen(meshcat: ClientConnection, recording: PageRecording) -> None:
-    """Takes down what Meshcat is told, until the connection is closed."""
+    """Records the messages to Meshcat until the connection is closed."""
     try:
         for message in meshcat:
             assert isinstance(message, bytes)
@@ -75,7 +75,7 @@ def _listen(meshcat: ClientConnection, recording: PageRecording) -> None:
 def _take_frames(
     page: ClientConnection, recording: PageRecording, end_s: float
 ) -> None:
-    """Takes down what the page is told, until a simulated time."""
+    """Records the messages to the page until a simulated time."""
     time_s = 0.0
     while time_s < end_s:
         message = json.loads(page.recv())

@@ -28,21 +28,15 @@ SCENES = ("cup_spoon", *(name for name in list_scenes() if name != "cup_spoon"))
 DURATION_S = 10.0
 # Rows of docs/verification/benchmarks.md, and what they are called here.
 LOOPS = {
-    "drake_haptics, your own backend, paced": "this package with a device of your own,"
-    " at 1 kHz by the clock",
-    "drake_haptics, your own plant, paced": "in a discrete plant of your own, by the"
-    " clock",
-    "drake_haptics, whole tick, paced": "this package at 1 kHz by the clock, as a"
-    " device needs it",
-    "drake_haptics, your own backend": "this package with a device of your own",
-    "drake_haptics, your own plant": "in a discrete plant of your own",
-    "drake_haptics, whole tick": "this package, device to device",
-    "drake_haptics, native part": "its C++ core alone",
-    "Drake, bushing, TAMSI": "Drake: bushing, point contact on the same pieces, TAMSI",
-    "Drake, bushing, SAP": "the same with SAP",
-    "MuJoCo, mj_step": "MuJoCo: `mj_step` with the same pieces, timed in C",
+    "drake_haptics, your own backend, paced": "a device of your own, by the clock",
+    "drake_haptics, your own plant, paced": "a discrete plant of your own,"
+    " by the clock",
+    "drake_haptics, your own backend": "a device of your own",
+    "drake_haptics, your own plant": "a discrete plant of your own",
+    "drake_haptics, native part": "the C++ core alone",
+    "Drake, bushing, TAMSI": "Drake: bushing and point contact, TAMSI",
+    "MuJoCo, mj_step": "MuJoCo: `mj_step`, timed in C",
 }
-UNDISTURBED = ("p99, undisturbed", "p99.9, undisturbed")
 
 
 def describe_shape(haptic: HapticDiagram) -> list[str]:
@@ -104,7 +98,7 @@ def make_scenes() -> str:
 
 
 def make_loops() -> str:
-    """Returns whole ticks, ours and of others, from docs/verification/benchmarks.md."""
+    """Returns whole ticks as users build them, and of others, from their page."""
     found = read_rows(
         "verification/benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs"
     )
@@ -114,11 +108,11 @@ def make_loops() -> str:
         for name, called in LOOPS.items()
         if name in by_name
     ]
-    head = ["one tick of `cup_spoon`", "median", *UNDISTURBED]
+    head = ["one tick of `cup_spoon`", "median", "p99", "p99.9"]
     return (
-        f"{to_markdown([head, *rows])}\nAll that are not by the clock run as"
-        " fast as they can, with warm caches. Undisturbed: the mean of the middle half"
-        " of the repeats of each tick.\n"
+        f"{to_markdown([head, *rows])}\nThe same pieces in all. By the clock: each"
+        " tick waits for its millisecond, as a device needs it; the others run as fast"
+        " as they can. Interruptions by the machine are left out.\n"
     )
 
 

@@ -46,7 +46,7 @@ def calc_growth(eigenvalues: np.ndarray) -> float:
 
 
 def drop_neutral(eigenvalues: np.ndarray) -> np.ndarray:
-    """Returns eigenvalues (n,) with 0 in the place of those at 1, to 1e-6.
+    """Returns eigenvalues (n,) with 0 instead of those at 1, to 1e-6.
 
     They belong to what has no place of its own: the adhesion points of friction, a
     balance of energy, the sign of a quaternion.

@@ -210,7 +210,7 @@ def _make_wall(
 
 
 def format_limit(value: float) -> str:
-    """Returns a limit with five digits, or in words where there is none."""
+    """Returns a limit with five digits, or in words without a limit."""
     if math.isnan(value):
         return "not seen"
     if math.isinf(value):

@@ -46,7 +46,7 @@ class _Pipe(Console):
 
 
 def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
-    """Returns a console as wide as the terminal, or any width where there is none.
+    """Returns a console as wide as the terminal, or of any width without a terminal.
 
     Colors are left out where the output is no terminal, or where the environment
     has NO_COLOR.

@@ -225,7 +225,7 @@ class CockpitRun:
         locked: str = "",
         views: frozenset[str] = SHOWN_AT_FIRST,
     ):
-        """Opens page and device; nobody need look at the page.
+        """Opens page and device; works without a browser.
 
         Args:
             scene: The scene to run.

@@ -208,7 +208,7 @@ class SceneChanges:
     def _list_changes(self) -> dict[str, Any]:
         """Returns the keys of a scene file that differ, and all effects if one does.
 
-        An effect is off where a file does not name it: so its place is told whole.
+        An effect that a file does not name is off, so its whole section is written.
         """
         changes: dict[str, Any] = {}
         for section in ("contact", "coupling"):

@@ -16,7 +16,7 @@ _HAPLY_PORT = 10001
 
 
 class NoPageError(DeviceError):
-    """A device that is moved on a page, where there is none."""
+    """A device that is moved on a page was asked for without a page."""
 
 
 # Opens a device by the parts of its address.

@@ -45,8 +45,8 @@ class SilenceMonitor:
 class DeviceWatch:
     """Records a device's faults and its largest loads.
 
-    A device at fault shows no force until somebody asks for it again: whoever holds
-    it must not be surprised.
+    A device at fault shows no force until somebody asks for it again: it must
+    not surprise the person who holds it.
 
     Args:
         backend: The device, open.

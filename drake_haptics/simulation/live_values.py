@@ -276,7 +276,7 @@ class LiveValueRamp:
     """Interpolates live values, to be written at each tick.
 
     A gain that rises by a factor makes a force that is held rise by as much: written
-    at once it kicks whoever holds the device. Here a force changes by no more than a
+    at once it kicks the hand on the device. Here a force changes by no more than a
     few hundredths of itself in a tick.
 
     Attributes:

@@ -61,7 +61,7 @@ class QuantityDiff:
         name: Name of the quantity and of its part.
         unit: Unit of the differences; empty for counts.
         differing: Number of ticks at which a bit of it differs.
-        first_tick: The first of them; None where there is none.
+        first_tick: The first tick that differs; None if all agree.
         largest: Largest norm of the difference; NaN where one run was not finite.
         largest_tick: Tick of the largest difference.
         rms: Root of the mean squared norm over all ticks compared.

@@ -111,7 +111,7 @@ def summarize_log(
 
 
 def _calc_largest_norm(vectors: np.ndarray) -> float:
-    """Returns the largest finite norm; 0 where there is none."""
+    """Returns the largest finite norm; 0 without a finite one."""
     with np.errstate(over="ignore", invalid="ignore"):
         norms = np.linalg.norm(vectors, axis=1)
     return float(norms[np.isfinite(norms)].max(initial=0.0))

@@ -101,7 +101,7 @@ def _find_block_header(stream: BinaryIO, start: int, size: int) -> int:
     return size
 
 
-# Progress is told by steps of this size: a block takes less time than a report.
+# Progress is reported in steps of this size: a block takes less time than a report.
 _REPORTED_SHARE = 0.01
 
 

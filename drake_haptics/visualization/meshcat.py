@@ -58,7 +58,7 @@ def start_meshcat(port: int | None = None) -> Meshcat:
             except (OSError, OverflowError) as error:
                 raise HapticsError(f"port {port} cannot be used: {error}") from error
     try:
-        # How fast it runs is told elsewhere.
+        # The page shows elsewhere how fast it runs.
         return Meshcat(
             MeshcatParams(host="localhost", port=port, show_stats_plot=False)
         )

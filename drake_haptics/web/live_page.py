@@ -77,7 +77,7 @@ _LOOK_PERIOD_S = 1 / 20
 
 @dataclass(frozen=True)
 class Outlook:
-    """The state that the page is told besides the ticks, 30 times a second.
+    """The state that the page gets besides the ticks, 30 times a second.
 
     Attributes:
         gate: Index into `messages.GATES`.

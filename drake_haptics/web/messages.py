@@ -17,7 +17,7 @@ from typing import Any
 
 # First bytes of packets: numbers here, JSON text where it is a brace.
 KIND = b"#"
-# Names of gates, as the page is told them, by their numbers in a packet.
+# Names of gates on the page, by their numbers in a packet.
 GATES = ("idle", "active", "fault", "simulated", "waiting")
 ACTIVE, SIMULATED, WAITING = map(GATES.index, ("active", "simulated", "waiting"))
 # And of faults, by those of `drake_haptics.device.backend.Fault`.

@@ -109,5 +109,5 @@ class MouseDevice(PageHandle):
         self._page.close()
 
     def _describe(self) -> Outlook:
-        """Returns what else the page is told."""
+        """Returns what else the page needs."""
         return Outlook(gate=self.gate, p_WH=self._p_WH)

@@ -1,4 +1,4 @@
-"""Serves the files of the page on this machine, and talks with whoever opened it."""
+"""Serves the files of the page on this machine, and talks with its browsers."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _MESSAGE_PAUSE_S = 0.002
 _REFUSED_PAUSE_S = 0.1
 _LONGEST_MESSAGE = 256
 _CLOSE_S = 0.5
-# A page that reads slower than it is told misses frames.
+# A page that reads too slowly misses frames.
 _MOST_UNREAD_BYTES = 1 << 16
 
 # Whatever a stranger sends to the port is no matter for the terminal.
@@ -90,7 +90,7 @@ class PageServer:
         self._forward = forward
         # The last one drives.
         self._pages: list[ServerConnection] = []
-        # What whoever comes is told first, by its name.
+        # The first messages to a new page, by name.
         self._lasting: dict[str, str] = {}
 
     async def open(self) -> Server:

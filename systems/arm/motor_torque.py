@@ -68,7 +68,7 @@ class MotorTorque(DifferentiableSystem):
         )
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
-        # The time is the hand's, and there is none.
+        # The hand gives the time, and there is no hand.
         torque = self._arm.calc_joint_torques(
             0.0, self._arm_state.Eval(context), self._F_Ho_W_rendered.Eval(context)
         )

@@ -168,7 +168,7 @@ class ContactQuery(DifferentiableSystem):
         )
         self._law: tuple[InputPort, InputPort] | None = None
         # The memory of a Context, which never changes an answer by more than round-off.
-        # That it is told of another tolerance as a cache entry costs a tick nothing.
+        # As a cache entry, passing on another tolerance costs a tick nothing.
         if enable_chain:
             self._law = self._declare_law()
             self._eval_tracker = self.DeclareAbstractOutputPort(

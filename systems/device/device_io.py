@@ -155,7 +155,7 @@ class _Exchange(LeafSystem):
         # Unrestricted updates come before all discrete ones of the same time.
         self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._read)
         # Publish events come after the updates of a tick and the step to the next, but
-        # before whoever paces the simulation waits for that.
+        # before the simulation's pacer waits for that.
         self.DeclarePeriodicPublishEvent(period_s, 0.0, self._write)
 
     def _read(self, context: Context, state: State) -> None:

@@ -13,7 +13,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics.device.lcm.haptic_messages import find_flaw, lcmt_haptic_status
 
-# What is told before the first message.
+# The output before the first message.
 _AT_REST = lcmt_haptic_status(pose=(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 
 

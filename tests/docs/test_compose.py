@@ -5,12 +5,19 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
+
+from driver_process import device_command, running
 
 PAGE = Path(__file__).parents[2] / "docs" / "compose.md"
 # What follows on gains is for test_live_values_docs.py.
 TEXT = PAGE.read_text(encoding="utf-8").partition("## Change gains")[0]
 PROGRAMS = re.findall(r"^```python\n(.*?)^```", TEXT, re.M | re.S)
+# The part on a device, which needs a plant before it and a driver.
+(DEVICE,) = re.findall(
+    r"(?ms)^    from drake_haptics import .*?^    with UdpDevice.*?\n(?=\n\S)", TEXT
+)
 
 
 def run_programs(folder, programs):
@@ -40,3 +47,16 @@ def test_a_tick_reads_what_a_log_notes(tmp_path):
     # Pressed, and within what the device can show; the integrators differ.
     assert 0.5 < most < 8.5
     assert apart < 1e-2
+
+
+def test_a_device_moves_a_body(tmp_path):
+    """The ring of the first program, in the place of a tool."""
+    until_plant = PROGRAMS[0].partition("rendering = ")[0]
+    file = tmp_path / "driver.json"
+    with running(device_command(file), file) as driver:
+        part = textwrap.dedent(DEVICE).replace("7400", str(driver.port))
+        part = part.replace('"tool"', '"ring"').replace("60.0", "1.0")
+        run_programs(tmp_path, [until_plant, part])
+        figures = driver.end()
+    assert figures["packets"]["accepted"] > 100
+    assert figures["max_force_N"] > 0.5, "the hand bears the ring's weight of 0.98 N"

@@ -52,7 +52,7 @@ class StudyError(RuntimeError):
     """Some tasks of a study have no result; the others have.
 
     Attributes:
-        results: A result per task, in their order; None where there is none.
+        results: The result of each task, in their order; None for a failed task.
         failures: The tasks whose function raised, in their order. Tasks that nobody
             came to, because the executor broke, are not among them.
     """

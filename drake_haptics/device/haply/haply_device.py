@@ -31,7 +31,7 @@ from drake_haptics.device.haply.exchange import (
 
 _RETRY_S = 0.1
 _CONNECT_S = 1.0
-# Ticks over which the lateness is told: a second of them.
+# Ticks that the lateness covers: a second of them.
 _LATENESS_TICKS = 1000
 # What an address may say.
 _OPTIONS: dict[str, Callable[[str], Any]] = {

@@ -150,7 +150,7 @@ def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
 def measure_p99(scene: Scene) -> float:
     """Runs a scene in a new process and returns the 99th percentile of its ticks, µs.
 
-    The process, its memory and its caches are new, as they are for whoever runs the
+    The process, its memory and its caches are new, as they are for a user who runs the
     scene. It runs one lap of the hand's path, at most 5 s of it.
 
     Raises:

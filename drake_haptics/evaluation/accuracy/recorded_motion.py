@@ -131,7 +131,7 @@ class ToolReplay:
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] at the tool's origin in the world, N·m and N: of
             contact and of all effects that push the tool.
-        distance: (n,) of the deepest contact, m; infinite where there is none nearer
+        distance: (n,) of the deepest contact, m; infinite if no contact is nearer
             than the scene's tolerance.
     """
 

@@ -29,7 +29,7 @@ MODEL_MARK = "†"
 _LEAST_SHOWN = {"N": 5e-4, "µm": 5e-4, "°": 0.05, "mJ": 5e-4}
 # A setting is worth a sentence if it saves this share of a tick.
 _WORTH = 0.1
-# A ratio this near to a simple one is told as that.
+# A ratio this near to a simple one is written as the simple one.
 _ROUND = 0.05
 
 

@@ -173,7 +173,7 @@ def compare(
 
     Args:
         F_Tcm_W: (n, 6) wrench [τ; f] at the truth's center of mass, N·m and N.
-        distance: (n,) of the deepest contact, m; infinite where there is none.
+        distance: (n,) of the deepest contact, m; infinite without a contact.
         tolerance_m: How far contacts were looked for, m. Depths are compared up to
             where both look.
         truth: At the same n ticks.

@@ -45,8 +45,8 @@ def find_truth(
     Every unit vector n bounds the signed distance of two convex bodies from below by
     its support gap h(n) = min n·a − max n·b, and the largest gap is the distance,
     apart as well as in depth. So gaps of the libraries' normals, found by going
-    through all vertices, judge all libraries alike: whoever finds a larger one shows
-    the others wrong.
+    through all vertices, judge all libraries alike: a library that finds a larger one
+    shows that the others are wrong.
 
     Args:
         pair: The bodies.

@@ -100,7 +100,7 @@ class Smoothness:
     """Steps from tick to tick beyond those of the truth, and errors.
 
     A step is what a value changes by from one tick to the next. That of the truth is
-    what the motion explains; the difference from it is told here.
+    what the motion explains; this is the difference from it.
 
     Attributes:
         point_step_m: Largest of the contact point, m.

@@ -52,7 +52,7 @@ class Profile:
         touched: (n,) objects with a contact.
         touched_triangles: Of all objects that are ever touched together.
         distance_m: (n,) of the nearest contact, m, negative where it penetrates;
-            infinite where there is none.
+            infinite without a contact.
     """
 
     name: str
@@ -188,7 +188,7 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
 
     Args:
         penetrating: (n,) bool, whether objects penetrate in each tick.
-        shortest: Ticks of the shortest interval that is told.
+        shortest: Ticks of the shortest interval that is reported.
 
     Returns:
         Intervals of alternating kind that cover all ticks; none of no ticks.

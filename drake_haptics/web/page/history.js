@@ -42,7 +42,7 @@ export class History {
     }
   }
 
-  /** The sample nearest to an age, as {age, force, torque}; null where there is none. */
+  /** The sample nearest to an age, as {age, force, torque}; null without a sample. */
   at(age) {
     let best = null, least = 0.1;
     for (let n = this.count; n > 0; n--) {

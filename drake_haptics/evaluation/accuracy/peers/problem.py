@@ -52,7 +52,7 @@ class PeerAnswers:
 
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] on the tool at its origin in the world, N·m, N.
-        distance: (n,) of the deepest contact, m; infinite where there is none.
+        distance: (n,) of the deepest contact, m; infinite without a contact.
         tolerance_m: How far it looked for contacts, m.
         seconds: (n,) time inside the library, s.
         remark: What the method was given besides, empty otherwise.

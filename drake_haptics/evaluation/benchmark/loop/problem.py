@@ -101,7 +101,7 @@ class LoopCourse:
     Attributes:
         X_WT: (n, 7) poses of the tool, m.
         num_contacts: (n,) pairs of pieces that push each other.
-        nearest_m: (n,) smallest signed distance of them, m; 0 where there is none.
+        nearest_m: (n,) smallest signed distance of them, m; 0 without a contact.
         force_N: (n,) of the spring between handle and tool, N.
     """
 
