@@ -60,7 +60,7 @@ class Segments:
         self._holding = holding
         self._meshcat = meshcat
         # Whether the tool begins where the handle is.
-        self._is_anew = True
+        self._is_restart = True
 
     def run(
         self,
@@ -78,7 +78,7 @@ class Segments:
         while left_s is None or left_s > 0.5 * self._haptic.period_s:
             try:
                 self._cockpit.begin(
-                    self._haptic, statistics, pace, is_restart=self._is_anew
+                    self._haptic, statistics, pace, is_restart=self._is_restart
                 )
                 on_begin(self._haptic)
                 change, last = self._run_one(
@@ -162,7 +162,7 @@ class Segments:
         is_felt = is_kept and holding.is_felt
         goes_on = last is not None and (is_felt or not change.restarts)
         X_WH = find_handle(old, last) if goes_on else None
-        self._is_anew = not goes_on
+        self._is_restart = not goes_on
         try:
             if change.handle != holding.name or is_restart:
                 holding.take(change.handle, X_WH)

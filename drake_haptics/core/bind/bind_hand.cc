@@ -78,7 +78,7 @@ void BindPath(nb::module_& m) {
           "never ends.\n"
           "    cubics: (m, 4, 7) coefficients by power of the time since the "
           "start, of [qw qx qy qz x y z]; the quaternion of any length.\n"
-          "    period_s: when the path begins anew; infinite if never.\n\n"
+          "    period_s: when the path begins again; infinite if never.\n\n"
           "Raises:\n    ValueError: sizes do not match or there is no period.")
       .def(
           "evaluate",
@@ -154,7 +154,7 @@ void BindFrameChange(nb::module_& m) {
                           "does not move in it, and wrenches the other way.")
       .def(nb::init<const PoseVector&>(), nb::arg("X_AB"),
            "Pose (7,) of B in A, [qw qx qy qz x y z], m.\n\n"
-           "Raises:\n    ValueError: it is none.")
+           "Raises:\n    ValueError: it is not a pose.")
       .def(
           "change_motion", &FrameChange::ChangeMotion, nb::arg("X_BH"),
           nb::arg("V_BH"),

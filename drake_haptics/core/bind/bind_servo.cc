@@ -130,8 +130,8 @@ void BindStatus(nb::module_& m) {
         "States without a finite pose, velocity and wrench.");
   count("restarts", &LinkCounts::restarts, "Of the driver.");
   count("silences", &LinkCounts::silences,
-        "Times that the driver was silent for so long that it was looked for "
-        "anew.");
+        "Times that the driver was silent for so long that the servo looked "
+        "for it again.");
   count("refused", &LinkCounts::refused,
         "Packets that the driver refused, by its own count.");
   status.def_ro("sent", &Status::sent, "Commands.")
