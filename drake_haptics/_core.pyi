@@ -1758,7 +1758,7 @@ class FrameChange:
         Pose (7,) of B in A, [qw qx qy qz x y z], m.
 
         Raises:
-            ValueError: it is none.
+            ValueError: it is not a pose.
         """
 
     def change_motion(self, X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
@@ -1782,7 +1782,7 @@ class PosePath:
         Args:
             starts_s: (m,) where they begin, rising from 0 s. The last one never ends.
             cubics: (m, 4, 7) coefficients by power of the time since the start, of [qw qx qy qz x y z]; the quaternion of any length.
-            period_s: when the path begins anew; infinite if never.
+            period_s: when the path begins again; infinite if never.
 
         Raises:
             ValueError: sizes do not match or there is no period.
@@ -2269,7 +2269,7 @@ class UdpServoStatus:
     @property
     def silences(self) -> int:
         """
-        Times that the driver was silent for so long that it was looked for anew.
+        Times that the driver was silent for so long that the servo looked for it again.
         """
 
     @property

@@ -83,8 +83,8 @@ class ConstraintToolStep(Diagram):
     The state is a discrete group (13), [X_WT; V_WT], and with friction a second one
     (8 for each object), the anchors, both updated every period from 0 s on, or read
     from a servo that steps the tool. At the end of each tick the system tells that
-    servo that the loop goes on. What the search knows from the last tick is the memory of a Context, and
-    never changes an answer by more than round-off.
+    servo that the loop goes on. What the search knows from the last tick is the memory
+    of a Context, and never changes an answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
     `set_gains`. Outputs have no derivatives by them, and none at all with friction.
