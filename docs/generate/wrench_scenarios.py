@@ -28,6 +28,7 @@ from wrench_chain import (
     wrench_at,
 )
 
+from drake_haptics._core import ConvexPieces
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 
@@ -88,6 +89,31 @@ def sphere_on_plane(method: str) -> Iterator[Case]:
     )
 
 
+def _flush_on_floor(
+    name: str,
+    method: str,
+    shape: ConvexPieces,
+    p_xy: list[float],
+    middle: list[float],
+    size_m: float,
+) -> Case:
+    """A shape on the floor, seen from above at `p_xy`, that touches about `middle`."""
+    expected, measured = [], []
+    for d in DISTANCES_M:
+        tool = place(shape, np.array([*p_xy, d]) + OFFSET)
+        expected.append(wrench_at(np.array(middle) - OFFSET, K * (T - d) * Z))
+        measured.append(run_chain(tool, [make_floor()], method).tool)
+    return Case(
+        name,
+        "f = k (t − d) n at the middle of the overlap",
+        "6, 9",
+        method,
+        np.array(expected),
+        np.array(measured),
+        size_m,
+    )
+
+
 def edge_on_plane(method: str) -> Iterator[Case]:
     """A ridge, whole and half beyond the plane's rim."""
     length = 8e-3
@@ -96,44 +122,18 @@ def edge_on_plane(method: str) -> Iterator[Case]:
         ("edge on plane", 0.0, 0.0),
         ("edge on plane, half beyond the rim", 0.1, -length / 2),
     ):
-        expected, measured = [], []
-        for d in DISTANCES_M:
-            tool = place(shape, np.array([x, 0, d]) + OFFSET)
-            expected.append(wrench_at(middle * X - OFFSET, K * (T - d) * Z))
-            measured.append(run_chain(tool, [make_floor()], method).tool)
-        yield Case(
-            name,
-            "f = k (t − d) n at the middle of the overlap",
-            "6, 9",
-            method,
-            np.array(expected),
-            np.array(measured),
-            length,
-        )
+        yield _flush_on_floor(name, method, shape, [x, 0], [middle, 0, 0], length)
 
 
 def face_on_plane(method: str) -> Iterator[Case]:
     """A face, whole and a quarter of it on the plane's corner."""
     half = np.array([8e-3, 6e-3, 3e-3])
     shape = box(2 * half, half[2] * Z - OFFSET)
-    for name, p, middle in (
+    for name, p_xy, middle in (
         ("face on plane", [0, 0], [0, 0, 0]),
         ("face on plane's corner", [0.1, 0.1], [-half[0] / 2, -half[1] / 2, 0]),
     ):
-        expected, measured = [], []
-        for d in DISTANCES_M:
-            tool = place(shape, np.array([*p, d]) + OFFSET)
-            expected.append(wrench_at(np.array(middle) - OFFSET, K * (T - d) * Z))
-            measured.append(run_chain(tool, [make_floor()], method).tool)
-        yield Case(
-            name,
-            "f = k (t − d) n at the middle of the overlap",
-            "6, 9",
-            method,
-            np.array(expected),
-            np.array(measured),
-            half[0],
-        )
+        yield _flush_on_floor(name, method, shape, p_xy, middle, half[0])
 
 
 def make_walls(count: int) -> list[Body]:

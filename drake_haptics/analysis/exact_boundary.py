@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
+from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.report.plain_data import to_plain_data
@@ -68,10 +69,7 @@ class ExactBoundary:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the curve, its peak and its tangent, the law of Gil et al."""
-        if axes is None:
-            from matplotlib import pyplot
-
-            axes = pyplot.figure().add_subplot()
+        axes = find_axes(axes)
         d = self.delay_samples
         label = f"{d} period{'' if d == 1 else 's'} of delay"
         (line,) = axes.plot(self.beta, self.alpha, label=label)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.modes import Mode, ModeKind, PeriodMap, find_modes
+from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.common.colors import STABLE, UNSTABLE
 
 if TYPE_CHECKING:
@@ -41,10 +42,7 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     Returns:
         The axes.
     """
-    if axes is None:
-        from matplotlib import pyplot
-
-        axes = pyplot.figure(figsize=(6.0, 6.0)).add_subplot()
+    axes = find_axes(axes, (6.0, 6.0))
     _draw_grid(axes, linear.period_s)
     modes = find_modes(linear)
     for label, look in _LOOKS.items():

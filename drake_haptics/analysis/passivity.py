@@ -26,6 +26,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
 
@@ -215,10 +216,7 @@ class Passivity:
             axes: The axes to draw on. Defaults to new ones.
             available: What there is, N·s/m, by name: "device", "device and hand".
         """
-        if axes is None:
-            from matplotlib import pyplot
-
-            axes = pyplot.figure().add_subplot()
+        axes = find_axes(axes)
         axes.plot(self.frequencies_Hz, self.required_damping, label="required")
         axes.plot(self.worst_frequency_Hz, self.worst_damping, "o", color="C0")
         for i, (name, damping) in enumerate((available or {}).items(), start=1):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.analysis.sampled_wall import (
     SampledWall,
     calc_largest_delay,
@@ -56,10 +57,7 @@ class DelayBounds:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the three over the delay, and the wall as a point."""
-        if axes is None:
-            from matplotlib import pyplot
-
-            axes = pyplot.figure().add_subplot()
+        axes = find_axes(axes)
         delays_ms = 1e3 * self.delays_s
         axes.semilogy(delays_ms, self.exact, label="stable (exact)")
         axes.semilogy(delays_ms, self.law, "--", label="law of Gil et al.")
@@ -130,10 +128,7 @@ class QuantizationBounds:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the stiffness over the resolution."""
-        if axes is None:
-            from matplotlib import pyplot
-
-            axes = pyplot.figure().add_subplot()
+        axes = find_axes(axes)
         axes.loglog(self.resolutions, self.stiffness, label="passive below")
         if math.isfinite(self.sufficient_resolution):
             axes.axvline(

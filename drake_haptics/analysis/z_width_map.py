@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.jobs.study import run_study
+from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.bounds.sampled_spring import (
     calc_passive_stiffness,
     calc_stable_stiffness,
@@ -203,10 +204,7 @@ class ZWidth:
                 "a map needs two stiffnesses and two dampings to be drawn, has"
                 f" {K.size} and {B.size}"
             )
-        if axes is None:
-            from matplotlib import pyplot
-
-            axes = pyplot.figure().add_subplot()
+        axes = find_axes(axes)
         _plot_region(K, B, self.spectral_radius, axes)
         if self.reasons:
             rows, columns = np.array(list(self.reasons)).T

@@ -202,11 +202,18 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
         " by millimeters in the meantime",
     )
     ticks = ticks_per_s / rate_hz
+    nearest_hz = ticks_per_s / max(1, round(ticks))
+    _require_whole(ticks, where, rate_hz, f"({ticks_per_s:g}) divided by", nearest_hz)
+
+
+def _require_whole(
+    ratio: float, where: str, rate_hz: float, rule: str, nearest_hz: float
+) -> None:
     require(
-        round(ticks) >= 1 and abs(ticks - round(ticks)) <= _RATE_SLACK * ticks,
+        round(ratio) >= 1 and abs(ratio - round(ratio)) <= _RATE_SLACK * ratio,
         where,
-        f"must be device.rate_hz ({ticks_per_s:g}) divided by a whole number, is"
-        f" {rate_hz:g}; {ticks_per_s / max(1, round(ticks)):.10g} is the nearest",
+        f"must be device.rate_hz {rule} a whole number, is {rate_hz:g};"
+        f" {nearest_hz:.10g} is the nearest",
     )
 
 
@@ -216,12 +223,8 @@ def _check_servo_rate(scene: Scene) -> None:
         return
     where = "device.servo_rate_hz"
     steps = rate_hz / ticks_per_s
-    require(
-        round(steps) >= 1 and abs(steps - round(steps)) <= _RATE_SLACK * steps,
-        where,
-        f"must be device.rate_hz ({ticks_per_s:g}) times a whole number, is"
-        f" {rate_hz:g}; {ticks_per_s * max(1, round(steps)):.10g} is the nearest",
-    )
+    nearest_hz = ticks_per_s * max(1, round(steps))
+    _require_whole(steps, where, rate_hz, f"({ticks_per_s:g}) times", nearest_hz)
     require(
         round(steps) == 1 or scene.contact.law == "constraint",
         where,

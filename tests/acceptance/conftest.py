@@ -1,6 +1,7 @@
-"""What tests in a browser share."""
+"""What tests in a browser share, and those of a driver in its own process."""
 
 import pytest
+from driver_process import WatchedLink
 from headless_browser import find_browser
 
 
@@ -11,3 +12,11 @@ def chromium():
     if path is None:
         pytest.skip("no Chromium on the PATH")
     return path
+
+
+@pytest.fixture
+def link(device):
+    """The way to a module's driver."""
+    with WatchedLink(device.port) as link:
+        yield link
+    link.check_limits()

@@ -26,14 +26,6 @@ def device(tmp_path_factory):
 
 
 @pytest.fixture
-def link(device):
-    """The way to the driver."""
-    with WatchedLink(device.port) as link:
-        yield link
-    link.check_limits()
-
-
-@pytest.fixture
 def host_file(tmp_path):
     """Where a host writes its figures."""
     return tmp_path / "host.json"

@@ -40,14 +40,6 @@ def device(tmp_path_factory):
 
 
 @pytest.fixture
-def link(device):
-    """The way to the driver."""
-    with WatchedLink(device.port) as link:
-        yield link
-    link.check_limits()
-
-
-@pytest.fixture
 def host(link):
     """A host that leaves the device idle."""
     host = StructHost(link.port)

@@ -1,26 +1,23 @@
 """Counts what the cockpit costs a tick, in instructions that no other program disturbs.
 
-python tests/benchmarks/cockpit_instructions.py [SCENE]
+python tests/benchmarks/cockpit_instructions.py [SCENE ...]
 
-Needs valgrind; half a minute. A paced run without a page, and one with the page's
-process beside it; time is that of the ticks, so that as many messages go to the page
-for each tick as in a run at the pace of a clock.
+Needs valgrind; half a minute for each scene. A paced run without a page, and one with
+the page's process beside it; time is that of the ticks, so that as many messages go to
+the page for each tick as in a run at the pace of a clock.
 """
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from contextlib import ExitStack, closing
 
-from library_counts import count_by_library
+from library_counts import count_by_library, run_benchmark
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit import cockpit
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.real_time import RealTimePacer
-from drake_haptics.evaluation.measuring.valgrind import counted, require_valgrind
+from drake_haptics.evaluation.measuring.valgrind import counted
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
@@ -72,25 +69,15 @@ def run_counted(name: str, kind: str) -> None:
         )
 
 
-def main() -> None:
-    """Prints the counts; with a kind too, is the program counted."""
-    if len(sys.argv) == 3:
-        run_counted(*sys.argv[1:])
-        return
-    scene = sys.argv[1] if len(sys.argv) == 2 else "cup_spoon"
-    try:
-        require_valgrind()
-        counts = {
-            kind: sum(count_by_library([__file__, scene, kind]).values()) / _TICKS
-            for kind in _KINDS
-        }
-    except HapticsError as error:
-        sys.exit(str(error))
-    except subprocess.CalledProcessError as error:
-        sys.exit(error.stderr)
-    print(f"{scene}: {counts['without']:,.0f} instructions per tick, with the cockpit")
-    print(f"{counts['with'] - counts['without']:,.0f} more")
+def print_counts(scene: str) -> None:
+    """Prints the instructions of a tick with the cockpit, and what it adds."""
+    without, with_cockpit = (
+        sum(count_by_library([__file__, scene, kind]).values()) / _TICKS
+        for kind in _KINDS
+    )
+    print(f"{scene}: {without:,.0f} instructions per tick, with the cockpit")
+    print(f"{with_cockpit - without:,.0f} more")
 
 
 if __name__ == "__main__":
-    main()
+    run_benchmark(_KINDS, run_counted, print_counts, ["cup_spoon"])

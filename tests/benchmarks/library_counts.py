@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
-from drake_haptics.evaluation.measuring.valgrind import run_callgrind
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.evaluation.measuring.valgrind import require_valgrind, run_callgrind
 
 
 def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
@@ -35,3 +38,30 @@ def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
                     counts[path] = counts.get(path, 0) + int(cost[1])
                 of_callee = False
     return counts
+
+
+def run_benchmark(
+    parts: Collection[str],
+    run_counted: Callable[[str, str], None],
+    print_counts: Callable[[str], None],
+    scenes: Sequence[str],
+) -> None:
+    """Prints the counts of scenes; with a part too, is the program counted.
+
+    Args:
+        parts: Names of what is counted in a scene.
+        run_counted: Runs a part of a scene, in the program that is counted.
+        print_counts: Counts the parts of a scene.
+        scenes: Names of those where the command line has none.
+    """
+    if len(sys.argv) == 3 and sys.argv[2] in parts:
+        run_counted(sys.argv[1], sys.argv[2])
+        return
+    try:
+        require_valgrind()
+        for scene in sys.argv[1:] or scenes:
+            print_counts(scene)
+    except HapticsError as error:
+        sys.exit(str(error))
+    except subprocess.CalledProcessError as error:
+        sys.exit(error.stderr)

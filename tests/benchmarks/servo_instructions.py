@@ -12,10 +12,8 @@ contact, under the constraint law. Counted are the core and its binding alone:
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import numpy as np
+from library_counts import count_by_library, run_benchmark
 from scipy.spatial.transform import Rotation
 
 from drake_haptics._core import (
@@ -25,14 +23,10 @@ from drake_haptics._core import (
     ServoLaw,
     ServoTool,
 )
-from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.evaluation.benchmark.loop.problem import LoopProblem, make_problem
-from drake_haptics.evaluation.measuring.valgrind import (
-    count_by_library,
-    counted,
-    require_valgrind,
-)
+from drake_haptics.evaluation.measuring.valgrind import counted
+from drake_haptics.loop.contact import find_skins
 
 PARTS = ("step", "period", "answer")
 # The shipped hands are in contact then.
@@ -86,7 +80,7 @@ def _make_stepper(problem: LoopProblem) -> ConstraintStepper:
     stepper = ConstraintStepper(
         problem.tool.core,
         [item.core for item in problem.objects],
-        [scene.contact.skin_m] * len(problem.objects),
+        find_skins(scene.contact, [item.material for item in scene.environment]),
         RigidToolDynamics(scene.tool.mass_kg, *problem.mass_properties()),
         CouplingGains(
             coupling.stiffness_N_per_m,
@@ -114,25 +108,13 @@ def _move_on(
     return np.concatenate([np.roll(turn.as_quat(), 1), q[4:] + time_s * V[3:]]), V
 
 
-def main() -> None:
-    """Prints a row for each scene; with a part too, is the program counted."""
-    if len(sys.argv) == 3 and sys.argv[2] in PARTS:
-        run_counted(sys.argv[1], sys.argv[2])
-        return
-    try:
-        require_valgrind()
-    except HapticsError as error:
-        sys.exit(str(error))
-    print(f"| instructions | {' | '.join(PARTS)} |")
+def print_counts(scene: str) -> None:
+    """Prints the instructions of each part."""
+    print(f"| {scene}: instructions | {' | '.join(PARTS)} |")
     print(f"| --- |{' --: |' * len(PARTS)}")
-    for scene in sys.argv[1:] or ["cup_spoon", "peg_in_hole"]:
-        try:
-            counts = [measure(scene, part) for part in PARTS]
-        except subprocess.CalledProcessError as error:
-            sys.exit(error.stderr)
-        row = " | ".join(f"{count:,.0f}" for count in counts)
-        print(f"| {scene} | {row} |", flush=True)
+    row = " | ".join(f"{measure(scene, part):,.0f}" for part in PARTS)
+    print(f"| a period | {row} |", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    run_benchmark(PARTS, run_counted, print_counts, ["cup_spoon", "peg_in_hole"])

@@ -17,15 +17,12 @@ each callback, each port that one reads, each vector that crosses. The core is t
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from contextlib import ExitStack
 
-from library_counts import count_by_library
+from library_counts import count_by_library, run_benchmark
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
-from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.benchmark.loop.problem import LoopProblem, make_problem
 from drake_haptics.evaluation.benchmark.loop.this_package import (
     BackendLoop,
@@ -33,7 +30,7 @@ from drake_haptics.evaluation.benchmark.loop.this_package import (
     ThisLoop,
 )
 from drake_haptics.evaluation.benchmark.loop.your_plant import PlantLoop
-from drake_haptics.evaluation.measuring.valgrind import counted, require_valgrind
+from drake_haptics.evaluation.measuring.valgrind import counted
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
@@ -99,28 +96,17 @@ def _run_counted(scene: str) -> None:
         run(haptic, (_WARM_UP + _TICKS + 1) * haptic.period_s, on_tick=on_tick)
 
 
-def main() -> None:
-    """Prints a table for each scene; with a loop too, is the program counted."""
-    if len(sys.argv) == 3 and sys.argv[2] in LOOPS:
-        run_counted(sys.argv[1], sys.argv[2])
-        return
-    try:
-        require_valgrind()
-    except HapticsError as error:
-        sys.exit(str(error))
-    for scene in sys.argv[1:] or ["cup_spoon"]:
-        print(f"| {scene}: instructions per tick | {' | '.join(LOOPS)} |")
-        print(f"| --- |{' --: |' * len(LOOPS)}")
-        try:
-            columns = [measure(scene, loop) for loop in LOOPS]
-        except subprocess.CalledProcessError as error:
-            sys.exit(error.stderr)
-        for name in columns[0]:
-            counts = " | ".join(f"{column[name]:,.0f}" for column in columns)
-            print(f"| {name} | {counts} |")
-        totals = " | ".join(f"{sum(column.values()):,.0f}" for column in columns)
-        print(f"| whole tick | {totals} |", flush=True)
+def print_counts(scene: str) -> None:
+    """Prints the instructions of a tick of each loop, by library."""
+    print(f"| {scene}: instructions per tick | {' | '.join(LOOPS)} |")
+    print(f"| --- |{' --: |' * len(LOOPS)}")
+    columns = [measure(scene, loop) for loop in LOOPS]
+    for name in columns[0]:
+        counts = " | ".join(f"{column[name]:,.0f}" for column in columns)
+        print(f"| {name} | {counts} |")
+    totals = " | ".join(f"{sum(column.values()):,.0f}" for column in columns)
+    print(f"| whole tick | {totals} |", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    run_benchmark(LOOPS, run_counted, print_counts, ["cup_spoon"])

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from box_scenes import write
+from box_scenes import write, write_scene
 from cell_mesh import cell_mesh
 from pydrake.math import RigidTransform, RotationMatrix
 
@@ -22,15 +22,7 @@ from drake_haptics.loop.clearance import Clearance, find_clearance, fit_skin
 from drake_haptics.models import FOLDER
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import (
-    ContactParameters,
-    EnvironmentObject,
-    HandParameters,
-    HandPathParameters,
-    Scene,
-    Tool,
-    Waypoint,
-)
+from drake_haptics.scene.schema import ContactParameters, Scene, Waypoint
 
 CELL_M = 0.01
 PLAY_M = 4e-4  # on each side
@@ -153,16 +145,12 @@ def make_scene(folder: Path, tolerance_m: float) -> Scene:
     """A peg that is led into the plate's hole."""
     plate = make_plate()
     body = trimesh.Trimesh(plate.vertices, plate.triangles)
-    way = [(0.0, 0.03), (1.0, 0.0)]
-    return Scene(
-        tool=Tool(mesh=write(folder, "peg", make_peg())),
-        environment=[
-            EnvironmentObject(name="plate", mesh=write(folder, "plate", body))
-        ],
+    return write_scene(
+        folder,
+        make_peg(),
+        {"plate": body},
+        [Waypoint(0.0, [0, 0, 0.03]), Waypoint(1.0, [0, 0, 0.0])],
         contact=ContactParameters(tolerance_m=tolerance_m),
-        hand=HandParameters(
-            path=HandPathParameters(waypoints=[Waypoint(t, [0, 0, z]) for t, z in way])
-        ),
     )
 
 
@@ -237,7 +225,7 @@ def test_the_default_skin_is_never_more_than_the_play(
 ) -> None:
     """The peg goes in, and nothing is asked."""
     scene = make_scene(tmp_path, 1e-4)
-    write(tmp_path, "peg", make_peg(play_m))
+    write(tmp_path, "tool", make_peg(play_m))
     scene.contact.law = "constraint"
     haptic = BuildHapticDiagram(scene)
     assert check_plausibility(haptic) == []

@@ -1,10 +1,12 @@
 """Small scenes for tests: a cube or a ball above a plate, made on the spot."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import trimesh
 
 from drake_haptics.scene.schema import (
+    ContactParameters,
     EnvironmentObject,
     HandParameters,
     HandPathParameters,
@@ -24,6 +26,27 @@ def write(folder: Path, name: str, mesh: trimesh.Trimesh) -> str:
     return str(path)
 
 
+def write_scene(
+    folder: Path,
+    tool: trimesh.Trimesh,
+    objects: Mapping[str, trimesh.Trimesh],
+    waypoints: list[Waypoint],
+    *,
+    contact: ContactParameters | None = None,
+    mass_kg: float = TOOL_MASS,
+) -> Scene:
+    """Returns a scene of a tool and objects by name, with its meshes in a folder."""
+    return Scene(
+        tool=Tool(mesh=write(folder, "tool", tool), mass_kg=mass_kg),
+        environment=[
+            EnvironmentObject(name=name, mesh=write(folder, name, mesh))
+            for name, mesh in objects.items()
+        ],
+        contact=contact or ContactParameters(),
+        hand=HandParameters(path=HandPathParameters(waypoints=waypoints)),
+    )
+
+
 def over_a_plate(
     folder: Path, waypoints, *, tool="cube", periodic=False, grip="nominal"
 ) -> Scene:
@@ -41,22 +64,12 @@ def over_a_plate(
         "ball": trimesh.creation.icosphere(subdivisions=2, radius=TOOL_HALF_HEIGHT),
     }
     plate = trimesh.creation.box([0.2, 0.2, 2 * PLATE_TOP])
-    return Scene(
-        tool=Tool(
-            mesh=write(folder, tool, tools[tool]),
-            mass_kg=TOOL_MASS,
-        ),
-        environment=[
-            EnvironmentObject(name="plate", mesh=write(folder, "plate", plate))
-        ],
-        hand=HandParameters(
-            grip=grip,
-            path=HandPathParameters(
-                periodic=periodic,
-                waypoints=[
-                    Waypoint(time_s=t, position_m=[x, y, z + PLATE_TOP])
-                    for t, x, y, z in waypoints
-                ],
-            ),
-        ),
+    scene = write_scene(
+        folder,
+        tools[tool],
+        {"plate": plate},
+        [Waypoint(t, [x, y, z + PLATE_TOP]) for t, x, y, z in waypoints],
     )
+    scene.hand.grip = grip
+    scene.hand.path.periodic = periodic
+    return scene

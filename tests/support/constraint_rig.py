@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import cycle
 
 import numpy as np
-from press_rig import START_M, Press
-from press_tools import PressTool
+from press_rig import START_M, Press, sample_presses
+from press_tools import PressTool, make_tools
 
 from drake_haptics import _core
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 PERIOD_S = 1e-3
 SKIN_M = 3e-4
@@ -85,6 +87,24 @@ def contact_wrench(result: _core.ConstraintStepResult, p_WTo: np.ndarray) -> np.
     f = result.lambda_N[:, None] * result.contacts.nhat_BA_W
     arms = result.contacts.p_WCa - p_WTo
     return np.concatenate([np.cross(arms, f).sum(axis=0), f.sum(axis=0)])
+
+
+def take_turns(mesh: Mesh) -> Iterator[tuple[PressTool, Press]]:
+    """Presses of four tools in turn on a surface, without end."""
+    tools = make_tools()
+    kinds = cycle(("spike", "ball", "box", "spoon"))
+    for number, kind in enumerate(kinds):
+        [press] = sample_presses(mesh, tools[kind], "press", [number], 7)
+        yield tools[kind], press
+
+
+def check_led_out(loop: ConstraintLoop, q_WH: np.ndarray, num_ticks: int) -> None:
+    """Asserts that a tool comes out with less than 3 N on the hand and no kick."""
+    for _ in range(num_ticks):
+        result = loop.tick(q_WH)
+        assert np.linalg.norm(result.F_Ho_W_commanded[3:]) < 3.0
+        assert np.linalg.norm(result.V_WT[3:]) < 0.1
+    assert result.is_apart
 
 
 def run_press(

@@ -15,23 +15,14 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from box_scenes import write
+from box_scenes import write_scene
 from cell_mesh import cell_mesh
 from minkowski_truth import place, signed_distance
 from scipy.spatial.transform import Rotation
 
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import (
-    ContactParameters,
-    EnvironmentObject,
-    HandParameters,
-    HandPathParameters,
-    Pose,
-    Scene,
-    Tool,
-    Waypoint,
-)
+from drake_haptics.scene.schema import ContactParameters, Pose, Scene, Waypoint
 from drake_haptics.simulation.run import run
 
 PERIOD_S = 1e-3
@@ -159,15 +150,13 @@ def make_scene(
         mesh = cell_mesh(case.cells, CELL_M)
         low = np.min([part.min(axis=0) for part in case.parts], axis=0)
         solids = [trimesh.Trimesh(mesh.vertices + low, mesh.triangles)]
-    start = case.way_W[0].tolist()
-    return Scene(
-        tool=Tool(mesh=write(folder, "tool", hull(case.tool)), mass_kg=MASS_KG),
-        environment=[
-            EnvironmentObject(name=f"part_{i}", mesh=write(folder, f"part_{i}", solid))
-            for i, solid in enumerate(solids)
-        ],
+    return write_scene(
+        folder,
+        hull(case.tool),
+        {f"part_{i}": solid for i, solid in enumerate(solids)},
+        [Waypoint(0.0, case.way_W[0].tolist())],
         contact=contact,
-        hand=HandParameters(path=HandPathParameters(waypoints=[Waypoint(0.0, start)])),
+        mass_kg=MASS_KG,
     )
 
 

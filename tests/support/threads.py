@@ -6,19 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from box_scenes import write
+from box_scenes import write_scene
 from degenerate_scenes import MASS_KG, PERIOD_S, Run, record
 
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
-from drake_haptics.scene.schema import (
-    ContactParameters,
-    EnvironmentObject,
-    HandParameters,
-    HandPathParameters,
-    Scene,
-    Tool,
-    Waypoint,
-)
+from drake_haptics.scene.schema import ContactParameters, Scene, Waypoint
 
 PITCH_M = 2e-3  # and lead
 MAJOR_M = 8e-3  # radius at the bolt's crest
@@ -145,14 +137,13 @@ class Turner(DeviceBackend):
 
 def make_thread_scene(contact: ContactParameters, folder: Path) -> Scene:
     """A bolt of five turns in a nut of two, with its meshes in a folder."""
-    start = [0.0, 0.0, -PITCH_M]
-    return Scene(
-        tool=Tool(mesh=write(folder, "bolt", make_bolt(5)), mass_kg=MASS_KG),
-        environment=[
-            EnvironmentObject(name="nut", mesh=write(folder, "nut", make_nut(2)))
-        ],
+    return write_scene(
+        folder,
+        make_bolt(5),
+        {"nut": make_nut(2)},
+        [Waypoint(0.0, [0.0, 0.0, -PITCH_M])],
         contact=contact,
-        hand=HandParameters(path=HandPathParameters(waypoints=[Waypoint(0.0, start)])),
+        mass_kg=MASS_KG,
     )
 
 

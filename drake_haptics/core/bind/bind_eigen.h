@@ -31,11 +31,14 @@ void ImportNumpy();
 /// is copied into a fresh one. All else that nanobind can read it still reads.
 namespace nanobind::detail {
 
+// As an integer: Eigen has an enumeration of its own for each type.
 template <typename T>
-concept AlignedMatrix =
-    std::is_same_v<typename T::Scalar, double> &&
-    std::is_base_of_v<Eigen::MatrixBase<T>, T> &&
-    !(Eigen::internal::traits<T>::Options & Eigen::DontAlign);
+constexpr int kMatrixOptions = Eigen::internal::traits<T>::Options;
+
+template <typename T>
+concept AlignedMatrix = std::is_same_v<typename T::Scalar, double> &&
+                        std::is_base_of_v<Eigen::MatrixBase<T>, T> &&
+                        !(kMatrixOptions<T> & Eigen::DontAlign);
 
 // As nanobind's own caster of such types, and more constrained.
 template <AlignedMatrix T>
@@ -44,9 +47,8 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
   static constexpr int rows = T::RowsAtCompileTime;
   static constexpr int columns = T::ColsAtCompileTime;
   // What nanobind's own caster takes: another type, by its alignment alone.
-  using Other =
-      Eigen::Matrix<double, rows, columns,
-                    Eigen::internal::traits<T>::Options | Eigen::DontAlign>;
+  using Other = Eigen::Matrix<double, rows, columns,
+                              kMatrixOptions<T> | Eigen::DontAlign>;
   static constexpr int kDimensions = ndim_v<T>;
 
   NB_TYPE_CASTER(T, make_caster<Other>::Name)

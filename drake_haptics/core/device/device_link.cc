@@ -119,8 +119,12 @@ void DeviceLink::Follow() {
   const bool is_gone =
       mode_ == Mode::kWaiting && !is_heard_ && latched_fault_ != DH_FAULT_NONE;
   const bool at_fault = mode_ == Mode::kLatched || is_gone;
-  state_.gate = at_fault ? DH_FAULT : device_gate_;
-  state_.fault = at_fault ? latched_fault_ : device_fault_;
+  state_.gate = device_gate_;
+  state_.fault = device_fault_;
+  if (at_fault) {
+    state_.gate = DH_FAULT;
+    state_.fault = latched_fault_;
+  }
 }
 
 bool DeviceLink::IsEnabling() const {

@@ -2,9 +2,29 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mman.h>
 
+#include <utility>
+
 namespace drake_haptics {
+namespace {
+
+// Blocks all signals while it lives: a thread that is started then gets none.
+class BlockedSignals {
+ public:
+  BlockedSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace
 
 bool RequestRealtimePriority(int level) {
   sched_param parameters{};
@@ -16,14 +36,20 @@ bool RequestLockedMemory(const void* begin, std::size_t size) {
   return mlock(begin, size) == 0;
 }
 
-BlockedSignals::BlockedSignals() {
-  sigset_t all;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before_);
+void ServoThread::Start(std::function<void()> serve) {
+  const BlockedSignals blocked;
+  thread_ = std::thread(std::move(serve));
 }
 
-BlockedSignals::~BlockedSignals() {
-  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+void ServoThread::Close() {
+  closing_.store(true);
+  if (getpid() != process_) {
+    // A fork has our memory, but not the thread, nor who may hold the lock.
+    if (thread_.joinable()) thread_.detach();
+    return;
+  }
+  const std::lock_guard lock(joining_);
+  if (thread_.joinable()) thread_.join();
 }
 
 }  // namespace drake_haptics

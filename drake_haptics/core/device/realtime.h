@@ -1,8 +1,12 @@
 #pragma once
 
-#include <signal.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cstddef>
+#include <functional>
+#include <mutex>
+#include <thread>
 
 namespace drake_haptics {
 
@@ -16,15 +20,24 @@ bool RequestRealtimePriority(int level);
 /// @returns whether it was granted.
 bool RequestLockedMemory(const void* begin, std::size_t size);
 
-/// Blocks all signals while it lives: a thread that is started then gets none.
-/// They are for the interpreter's thread, which would else sleep on.
-class BlockedSignals {
+/// The thread of a servo. It gets no signals: they are for the interpreter's
+/// thread, which would else sleep on.
+class ServoThread {
  public:
-  BlockedSignals();
-  ~BlockedSignals();
+  /// Runs `serve`, which returns soon after `IsClosing`. Called once.
+  void Start(std::function<void()> serve);
+
+  /// Whether the thread is to end. Any thread.
+  bool IsClosing() const { return closing_.load(std::memory_order_relaxed); }
+
+  /// Ends the thread; later calls do nothing. Any thread.
+  void Close();
 
  private:
-  sigset_t before_;
+  const pid_t process_ = getpid();
+  std::atomic<bool> closing_{false};
+  std::mutex joining_;
+  std::thread thread_;
 };
 
 }  // namespace drake_haptics

@@ -49,7 +49,8 @@ class Seqlock {
       }
       std::atomic_thread_fence(std::memory_order_acquire);
       if (version_.load(std::memory_order_relaxed) != before) continue;
-      std::memcpy(value, words.data(), sizeof(T));
+      // As bytes: members with initial values make T nontrivial.
+      std::memcpy(static_cast<void*>(value), words.data(), sizeof(T));
       *seen = before;
       return true;
     }

@@ -1,14 +1,11 @@
 #include "device/udp_servo.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 
 #include "base/require.h"
-#include "device/realtime.h"
 #include "drake_haptics/wire.h"
 
 namespace drake_haptics {
@@ -46,30 +43,16 @@ UdpServo::UdpServo(const std::string& host, std::uint16_t port,
                    const UdpServoOptions& options)
     : options_((options.Check(), options)),
       session_(DrawSession()),
-      process_(getpid()),
       epoch_(std::chrono::steady_clock::now()),
       socket_(host, port),
       link_(std::max(kSilence, 2 * options.time_to_live)),
       law_(options.times) {
   report_.is_running = true;
   Report();
-  const BlockedSignals blocked;
-  thread_ = std::thread([this] { Run(); });
+  thread_.Start([this] { Run(); });
 }
 
 UdpServo::~UdpServo() { Close(); }
-
-void UdpServo::Close() {
-  closing_.store(true);
-  if (getpid() != process_) {
-    // A fork has our memory, but not the thread, nor who may hold the lock; and
-    // the device is not its own.
-    if (thread_.joinable()) thread_.detach();
-    return;
-  }
-  const std::lock_guard lock(joining_);
-  if (thread_.joinable()) thread_.join();
-}
 
 HandleState UdpServo::Read() {
   state_box_.ReadNewer(&read_seen_, &read_);
@@ -119,7 +102,7 @@ void UdpServo::Run() {
 }
 
 void UdpServo::Serve() {
-  while (!closing_.load(std::memory_order_relaxed)) {
+  while (!thread_.IsClosing()) {
     socket_.Wait(kPatience);
     const double rest = allowed_at_ - Now();
     if (rest > 0) {

@@ -1,18 +1,15 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <limits>
-#include <mutex>
 #include <string>
-#include <thread>
 
 #include "device/device_link.h"
 #include "device/latency_histogram.h"
+#include "device/realtime.h"
 #include "device/seqlock.h"
 #include "device/servo_law.h"
 #include "device/udp_socket.h"
@@ -83,7 +80,7 @@ class UdpServo {
 
   /// Disables the device and ends the thread, in about 20 ms; later calls do
   /// nothing. Any thread.
-  void Close();
+  void Close() { thread_.Close(); }
 
   /// One thread only.
   UdpServoStatus status();
@@ -106,14 +103,12 @@ class UdpServo {
 
   const UdpServoOptions options_;
   const std::uint32_t session_;
-  const pid_t process_;
   const std::chrono::steady_clock::time_point epoch_;
   UdpSocket socket_;
 
   // To the thread.
   Seqlock<PlainWrench> wrench_box_;
   std::atomic<bool> recover_{false};
-  std::atomic<bool> closing_{false};
 
   // From the thread.
   Seqlock<HandleState> state_box_;
@@ -137,8 +132,7 @@ class UdpServo {
   double allowed_at_ = 0;
   UdpServoStatus report_;
 
-  std::mutex joining_;
-  std::thread thread_;
+  ServoThread thread_;
 };
 
 }  // namespace drake_haptics

@@ -1,14 +1,10 @@
 #include "servo/contact_servo.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <exception>
 #include <stdexcept>
 #include <utility>
-
-#include "device/realtime.h"
 
 namespace drake_haptics {
 namespace {
@@ -19,28 +15,13 @@ constexpr int kPriority = 9;
 }  // namespace
 
 ContactServo::ContactServo(UdpServo* servo, ServoTool tool)
-    : servo_(servo),
-      process_(getpid()),
-      tool_(std::move(tool)),
-      clock_(tool_.period()) {
+    : servo_(servo), tool_(std::move(tool)), clock_(tool_.period()) {
   report_.is_running = true;
   Report();
-  const BlockedSignals blocked;
-  thread_ = std::thread([this] { Run(); });
+  thread_.Start([this] { Run(); });
 }
 
 ContactServo::~ContactServo() { Close(); }
-
-void ContactServo::Close() {
-  closing_.store(true);
-  if (getpid() != process_) {
-    // A fork has our memory, but not the thread, nor who may hold the lock.
-    if (thread_.joinable()) thread_.detach();
-    return;
-  }
-  const std::lock_guard lock(joining_);
-  if (thread_.joinable()) thread_.join();
-}
 
 void ContactServo::Renew(const CouplingGains& gains, const Vec6& F_applied) {
   PlainLoad load{
@@ -76,7 +57,7 @@ void ContactServo::Run() {
 }
 
 void ContactServo::Serve() {
-  while (!closing_.load(std::memory_order_relaxed)) {
+  while (!thread_.IsClosing()) {
     const double rest = clock_.EndTurn(servo_->Now());
     std::this_thread::sleep_for(std::chrono::duration<double>(rest));
     load_box_.ReadNewer(&load_seen_, &load_);

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <mutex>
-#include <thread>
 
+#include "device/realtime.h"
 #include "device/seqlock.h"
 #include "device/udp_servo.h"
 #include "servo/period_clock.h"
@@ -52,7 +48,7 @@ class ContactServo {
   ContactServoStatus status();
 
   /// Ends the thread; later calls do nothing. Any thread.
-  void Close();
+  void Close() { thread_.Close(); }
 
  private:
   // Gains, F_applied, share, time; pose and velocity: plain memory crosses
@@ -66,11 +62,9 @@ class ContactServo {
   void Report();
 
   UdpServo* const servo_;
-  const pid_t process_;
 
   // To the thread.
   Seqlock<PlainLoad> load_box_;
-  std::atomic<bool> closing_{false};
 
   // From the thread.
   Seqlock<PlainTool> tool_box_;
@@ -92,8 +86,7 @@ class ContactServo {
   std::uint64_t handle_seen_ = 0;
   ContactServoStatus report_;
 
-  std::mutex joining_;
-  std::thread thread_;
+  ServoThread thread_;
 };
 
 }  // namespace drake_haptics

@@ -5,68 +5,22 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <memory>
-#include <new>
-#include <random>
 #include <tuple>
 #include <vector>
 
+#include "allocations.h"
 #include "check.h"
 #include "constraint/constraint_step.h"
 #include "pair/separation.h"
-
-static long allocations = 0;
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "shapes.h"
 
 using namespace drake_haptics;
 
 namespace {
 
-using Shape = std::shared_ptr<const Decomposition>;
 using Name = std::tuple<int, int, int>;  // object, pieces
-std::mt19937 generator(0);
 constexpr double kSkin = 3e-4;
-
-Vec3 Random(double size) {
-  std::uniform_real_distribution<double> uniform(-size, size);
-  return {uniform(generator), uniform(generator), uniform(generator)};
-}
-
-// Convex bodies of about 1 cm in a ball of 4 cm.
-Shape Swarm(int count) {
-  auto swarm = std::make_shared<Decomposition>();
-  for (int i = 0; i < count; ++i) {
-    const Vec3 center = Random(0.04);
-    std::vector<Vec3> points;
-    for (int k = 0; k < 8; ++k) points.push_back(center + Random(0.008));
-    swarm->pieces.push_back(MakePolytope(points));
-  }
-  return swarm;
-}
-
-Shape BoxOf(const Vec3& half) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) {
-    corners.push_back(half.cwiseProduct(
-        Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
-  }
-  auto box = std::make_shared<Decomposition>();
-  box->pieces.push_back(MakePolytope(corners));
-  return box;
-}
 
 // The tool's way at tick k: past the objects, turning.
 Pose Way(int k) {
@@ -99,8 +53,8 @@ std::map<Name, double> AskAllPairs(const Decomposition& tool,
 
 // With objects that rest and move, and reaches that change.
 void TheyAreAllPairsWithinReach() {
-  const Shape tool = Swarm(6);
-  const std::vector<Shape> objects{Swarm(12), Swarm(5)};
+  const Shape tool = MakeSwarm(6);
+  const std::vector<Shape> objects{MakeSwarm(12), MakeSwarm(5)};
   ConstraintRows rows(tool, objects, {kSkin, kSkin});
   std::vector<Pose> X_WO(2);
   int num_found = 0;
@@ -137,8 +91,8 @@ void TheyAreAllPairsWithinReach() {
 void ARowBoundsTheDistanceAfterATranslation() {
   int num_turned = 0;
   for (int k = 0; k < 300; ++k) {
-    const Shape tool = Swarm(1), object = Swarm(1);
-    const Pose X_WT{Mat3::Identity(), Random(0.01)};
+    const Shape tool = MakeSwarm(1), object = MakeSwarm(1);
+    const Pose X_WT{Mat3::Identity(), RandomPoint(0.01)};
     const double distance =
         ComputeSeparation(
             {tool->pieces[0], object->pieces[0], RelativePose(X_WT, Pose())},
@@ -149,7 +103,7 @@ void ARowBoundsTheDistanceAfterATranslation() {
     rows.Query(X_WT, 0.1);
     CHECK(rows.planes().size() == 1);
     if (k % 2 == 1) {
-      const Pose X_next{Mat3::Identity(), X_WT.p + Random(0.02)};
+      const Pose X_next{Mat3::Identity(), X_WT.p + RandomPoint(0.02)};
       const double least = 0.5 * distance;
       const bool is_turned = rows.TurnPlane(0, X_next, Pose(), least);
       num_turned += is_turned;
@@ -157,7 +111,7 @@ void ARowBoundsTheDistanceAfterATranslation() {
       rows.UpdateRows();
     }
     for (int j = 0; j < 20; ++j) {
-      const Vec3 t = Random(0.02);
+      const Vec3 t = RandomPoint(0.02);
       const double then =
           ComputeSeparation({tool->pieces[0], object->pieces[0],
                              RelativePose({X_WT.R, X_WT.p + t}, Pose())},
@@ -175,8 +129,8 @@ void ARowBoundsTheDistanceAfterATranslation() {
 
 // A box above another one, their overlap known in closed form.
 void FlushFacesHaveARowAtEachCornerOfTheirOverlap() {
-  ConstraintRows rows(BoxOf({0.01, 0.02, 0.005}), {BoxOf({0.03, 0.03, 0.01})},
-                      {kSkin});
+  ConstraintRows rows(MakeBox({0.01, 0.02, 0.005}),
+                      {MakeBox({0.03, 0.03, 0.01})}, {kSkin});
   rows.Query({Mat3::Identity(), Vec3(0.025, -0.015, 0.0153)}, 1e-4);
   CHECK(rows.planes().size() == 1);
   for (const double x : {0.015, 0.03}) {
@@ -198,8 +152,8 @@ ConstraintStepper MakeStepper(double period) {
   settings.q_HT << 1, 0, 0, 0, 0, 0, 0;
   settings.period = period;
   settings.skin = {kSkin, kSkin};
-  return ConstraintStepper(Swarm(3), {BoxOf({0.06, 0.06, 0.03}), Swarm(5)},
-                           settings);
+  return ConstraintStepper(
+      MakeSwarm(3), {MakeBox({0.06, 0.06, 0.03}), MakeSwarm(5)}, settings);
 }
 
 void AWarmTickAllocatesNothing() {

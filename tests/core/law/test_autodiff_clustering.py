@@ -7,7 +7,7 @@ import copy
 import numpy as np
 import pytest
 import trimesh
-from contact_samples import box, shipped
+from contact_samples import box
 from contact_state import (
     METHODS,
     State,
@@ -28,14 +28,6 @@ COLUMNS = (
     "damping_share",
     "coupling",
 )
-
-
-@pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
-    return {
-        "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
-        "spoon in cup": (shipped("spoon"), shipped("cup")),
-    }
 
 
 def clusters(state: State) -> _core.ClusterSet:

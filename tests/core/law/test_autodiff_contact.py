@@ -10,7 +10,7 @@ from autodiff_check import (
     constant,
     seeded,
 )
-from contact_samples import box, contacts_at, shipped
+from contact_samples import contacts_at
 from contact_state import State, T, check_every_column, random_states
 
 from drake_haptics import _core
@@ -18,15 +18,6 @@ from drake_haptics._core import AutoDiffVector
 
 STEP = 5e-7
 COLUMNS = ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC", "extent", "flushness")
-
-
-@pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
-    return {
-        "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
-        "spoon in cup": (shipped("spoon"), shipped("cup")),
-        "peg in torus": (shipped("peg"), shipped("torus")),
-    }
 
 
 @pytest.mark.parametrize("name", ["box on box", "spoon in cup", "peg in torus"])

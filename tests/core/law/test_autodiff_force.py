@@ -9,7 +9,6 @@ import pytest
 from autodiff_check import (
     constant,
 )
-from contact_samples import box, shipped
 from contact_state import (
     KV,
     METHODS,
@@ -37,15 +36,6 @@ BLOCKS = {
         for columns, c in (("turn", (0, 3)), ("shift", (3, 6)))
     },
 }
-
-
-@pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
-    return {
-        "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
-        "spoon in cup": (shipped("spoon"), shipped("cup")),
-        "peg in torus": (shipped("peg"), shipped("torus")),
-    }
 
 
 @pytest.mark.parametrize("method", METHODS)

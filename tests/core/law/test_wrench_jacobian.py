@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_samples import box, shipped
+from contact_samples import box
 from contact_state import KV, METHODS, K, State, T, random_states
 from scipy.spatial.transform import Rotation
 
@@ -40,16 +40,6 @@ def differences(
 
 def error(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
-
-
-@pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
-    return {
-        "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
-        "spoon in cup": (shipped("spoon"), shipped("cup")),
-        "peg in torus": (shipped("peg"), shipped("torus")),
-        "cup on block": (shipped("cup"), shipped("block")),
-    }
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -2,13 +2,13 @@
 // anything put in.
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <memory>
 #include <random>
 
 #include "any_values.h"
 #include "base/positive_semidefinite.h"
 #include "base/wrench_limit.h"
 #include "check.h"
+#include "shapes.h"
 #include "tool/handle_model.h"
 #include "tool/tool_loop.h"
 
@@ -66,17 +66,6 @@ void SlopesAtTheHandleGiveNoEnergy() {
   }
 }
 
-std::shared_ptr<const Decomposition> Box(const Vec3& half) {
-  auto box = std::make_shared<Decomposition>();
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) {
-    corners.push_back(half.cwiseProduct(
-        Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
-  }
-  box->pieces.push_back(MakePolytope(corners));
-  return box;
-}
-
 // A hand that holds the tool 2 mm deep in the floor, by a coupling half as
 // stiff as the contact: they are in balance at the floor.
 void ATickGoesToTheRestOfTwoSprings() {
@@ -89,8 +78,8 @@ void ATickGoesToTheRestOfTwoSprings() {
   settings.materials = {{1000, 5}};
   settings.period = 1e-3;
   const double tolerance = 1e-3;
-  ContactTracker tracker(Box(Vec3(0.01, 0.01, 0.01)),
-                         {Box(Vec3(0.1, 0.1, 0.02))}, tolerance);
+  ContactTracker tracker(MakeBox(Vec3(0.01, 0.01, 0.01)),
+                         {MakeBox(Vec3(0.1, 0.1, 0.02))}, tolerance);
   tracker.SetObjectPose(0, {Mat3::Identity(), Vec3(0, 0, -0.02)});
   ToolLoop loop(std::move(tracker), settings);
   PoseVector q_WH = PoseVector::Unit(0);

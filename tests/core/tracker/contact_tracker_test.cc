@@ -5,54 +5,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <memory>
-#include <new>
-#include <random>
 
+#include "allocations.h"
 #include "check.h"
-
-static long allocations = 0;
-static long last_allocation = -1;  // the one before memory is full; -1: none
-
-void* operator new(std::size_t size) {
-  if (++allocations > last_allocation && last_allocation >= 0) {
-    throw std::bad_alloc();
-  }
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "shapes.h"
 
 using namespace drake_haptics;
 
 namespace {
-
-using Shape = std::shared_ptr<const Decomposition>;
-std::mt19937 generator(0);
-
-Vec3 Random(double size) {
-  std::uniform_real_distribution<double> uniform(-size, size);
-  return {uniform(generator), uniform(generator), uniform(generator)};
-}
-
-// Convex bodies of about 1 cm in a ball of 4 cm.
-Shape Swarm(int count) {
-  auto swarm = std::make_shared<Decomposition>();
-  for (int i = 0; i < count; ++i) {
-    const Vec3 center = Random(0.04);
-    std::vector<Vec3> points;
-    for (int k = 0; k < 8; ++k) points.push_back(center + Random(0.008));
-    swarm->pieces.push_back(MakePolytope(points));
-  }
-  return swarm;
-}
 
 // The tool's way at tick k: in and out among the objects, turning.
 Pose Way(int k) {
@@ -188,7 +149,7 @@ bool AreEqual(const std::vector<Contact>& found,
 }
 
 void TestAgainstAllPairs(double tolerance, bool objects_move) {
-  const Shape tool = Swarm(12), shape = Swarm(15), other = Swarm(6);
+  const Shape tool = MakeSwarm(12), shape = MakeSwarm(15), other = MakeSwarm(6);
   const std::vector<Shape> objects{shape, other, shape, shape};
   ContactTracker tracker(tool, objects, tolerance);
   PlainTracker plain(tool, objects, tolerance);
@@ -225,7 +186,7 @@ void TestAgainstAllPairs(double tolerance, bool objects_move) {
 }
 
 void TestNoAllocationWhenWarm() {
-  const Shape tool = Swarm(12), shape = Swarm(15);
+  const Shape tool = MakeSwarm(12), shape = MakeSwarm(15);
   std::vector<Shape> objects(30, shape);
   ContactTracker tracker(tool, objects, 2e-3);
   for (int i = 0; i < 30; ++i) {
@@ -272,7 +233,7 @@ bool RunsOutOfMemory(long most, const Act& act) {
 // Whichever allocation of a query fails, the next queries find what a tracker
 // finds that begins there.
 void TestFullMemoryIsForgotten() {
-  const Shape tool = Swarm(12), shape = Swarm(15);
+  const Shape tool = MakeSwarm(12), shape = MakeSwarm(15);
   const ContactTracker fresh(tool, {shape, shape}, 2e-3);
   ContactTracker warm = fresh;
   const auto ask = [](ContactTracker* tracker, int k, ContactSet* found) {

@@ -1,0 +1,22 @@
+"""Axes for plots, of a new figure where none are given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def find_axes(axes: Axes | None, size: tuple[float, float] | None = None) -> Axes:
+    """Returns axes to draw in.
+
+    Args:
+        axes: They are returned; None makes a figure.
+        size: Width and height of the figure, inches. Defaults to Matplotlib's.
+    """
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot
+
+    return pyplot.figure(figsize=size).add_subplot()
