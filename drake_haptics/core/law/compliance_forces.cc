@@ -19,7 +19,8 @@ class Pressed {
       : skin_(skin),
         slope_(Eigen::VectorXd::Zero(skin.features.cols())),
         sum_(Eigen::MatrixXd::Identity(skin.features.rows(),
-                                       skin.features.rows())) {}
+                                       skin.features.rows())),
+        changed_(skin.features.rows(), skin.features.cols()) {}
 
   // Solves for what the skin yields by, u = M Σ r w φ, and how much deeper each
   // contact is than that, w − φᵀ u: above 0 where it pushes, by λ / r.
@@ -51,24 +52,22 @@ class Pressed {
   // whose becomes less.
   void Add(const Eigen::VectorXd& change) {
     for (const double sign : {1.0, -1.0}) {
-      std::vector<Eigen::Index> changed;
+      Eigen::Index count = 0;
       for (Eigen::Index a = 0; a < change.size(); ++a) {
-        if (sign * change[a] > 0) changed.push_back(a);
-      }
-      if (changed.empty()) continue;
-      Eigen::MatrixXd features(skin_.features.rows(), changed.size());
-      for (std::size_t k = 0; k < changed.size(); ++k) {
-        const Eigen::Index a = changed[k];
-        features.col(k) =
+        if (!(sign * change[a] > 0)) continue;
+        changed_.col(count++) =
             std::sqrt(std::abs(change[a])) * skin_.features.col(a);
       }
-      sum_.selfadjointView<Eigen::Lower>().rankUpdate(features, sign);
+      if (count == 0) continue;
+      sum_.selfadjointView<Eigen::Lower>().rankUpdate(changed_.leftCols(count),
+                                                      sign);
     }
   }
 
   const Skin& skin_;
-  Eigen::VectorXd slope_;  // sums of r by directions
-  Eigen::MatrixXd sum_;    // 1 + Σ r φ φᵀ, its lower half
+  Eigen::VectorXd slope_;    // sums of r by directions
+  Eigen::MatrixXd sum_;      // 1 + Σ r φ φᵀ, its lower half
+  Eigen::MatrixXd changed_;  // √|change| φ, a column for each that changes
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
@@ -95,6 +94,7 @@ double FindLeast(const Eigen::VectorXd& slope, const Eigen::VectorXd& rest,
     double change;  // of the curvature
   };
   std::vector<Kink> kinks;
+  kinks.reserve(rest.size());
   double curvature = square;
   for (Eigen::Index i = 0; i < rest.size(); ++i) {
     const double rise = next[i] - rest[i];
