@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace drake_haptics {
@@ -25,21 +24,22 @@ class Pressed {
   // Solves for what the skin yields by, u = M Σ r w φ, and how much deeper each
   // contact is than that, w − φᵀ u: above 0 where it pushes, by λ / r.
   void Press(const std::vector<char>& is_pushing) {
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(slope_.size());
-    Eigen::VectorXd load = slope;
+    change_ = slope_;
+    slope_.setZero();
+    load_.setZero(slope_.size());
     for (std::size_t i = 0; i < is_pushing.size(); ++i) {
       if (!is_pushing[i]) continue;
-      slope[skin_.direction[i]] += skin_.slope[i];
-      load[skin_.direction[i]] += skin_.slope[i] * skin_.depth[i];
+      slope_[skin_.direction[i]] += skin_.slope[i];
+      load_[skin_.direction[i]] += skin_.slope[i] * skin_.depth[i];
     }
-    Add(slope - slope_);
-    slope_ = std::move(slope);
+    change_ = slope_ - change_;
+    Add(change_);
     factor_.compute(sum_);
-    yield = factor_.solve(skin_.features * load);
-    const Eigen::VectorXd yields = skin_.features.transpose() * yield;
+    yield = factor_.solve(skin_.features * load_);
+    yields_.noalias() = skin_.features.transpose() * yield;
     rest = skin_.depth;
     for (Eigen::Index i = 0; i < rest.size(); ++i) {
-      rest[i] -= yields[skin_.direction[i]];
+      rest[i] -= yields_[skin_.direction[i]];
     }
   }
 
@@ -65,8 +65,9 @@ class Pressed {
   }
 
   const Skin& skin_;
-  Eigen::VectorXd slope_;    // sums of r by directions
-  Eigen::MatrixXd sum_;      // 1 + Σ r φ φᵀ, its lower half
+  Eigen::VectorXd slope_;                   // sums of r by directions
+  Eigen::MatrixXd sum_;                     // 1 + Σ r φ φᵀ, its lower half
+  Eigen::VectorXd change_, load_, yields_;  // by directions, of one call
   Eigen::MatrixXd changed_;  // √|change| φ, a column for each that changes
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
