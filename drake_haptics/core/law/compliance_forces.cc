@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace drake_haptics {
@@ -19,26 +18,28 @@ class Pressed {
       : skin_(skin),
         slope_(Eigen::VectorXd::Zero(skin.features.cols())),
         sum_(Eigen::MatrixXd::Identity(skin.features.rows(),
-                                       skin.features.rows())) {}
+                                       skin.features.rows())),
+        changed_(skin.features.rows(), skin.features.cols()) {}
 
   // Solves for what the skin yields by, u = M Σ r w φ, and how much deeper each
   // contact is than that, w − φᵀ u: above 0 where it pushes, by λ / r.
   void Press(const std::vector<char>& is_pushing) {
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(slope_.size());
-    Eigen::VectorXd load = slope;
+    change_ = slope_;
+    slope_.setZero();
+    load_.setZero(slope_.size());
     for (std::size_t i = 0; i < is_pushing.size(); ++i) {
       if (!is_pushing[i]) continue;
-      slope[skin_.direction[i]] += skin_.slope[i];
-      load[skin_.direction[i]] += skin_.slope[i] * skin_.depth[i];
+      slope_[skin_.direction[i]] += skin_.slope[i];
+      load_[skin_.direction[i]] += skin_.slope[i] * skin_.depth[i];
     }
-    Add(slope - slope_);
-    slope_ = std::move(slope);
+    change_ = slope_ - change_;
+    Add(change_);
     factor_.compute(sum_);
-    yield = factor_.solve(skin_.features * load);
-    const Eigen::VectorXd yields = skin_.features.transpose() * yield;
+    yield = factor_.solve(skin_.features * load_);
+    yields_.noalias() = skin_.features.transpose() * yield;
     rest = skin_.depth;
     for (Eigen::Index i = 0; i < rest.size(); ++i) {
-      rest[i] -= yields[skin_.direction[i]];
+      rest[i] -= yields_[skin_.direction[i]];
     }
   }
 
@@ -51,24 +52,23 @@ class Pressed {
   // whose becomes less.
   void Add(const Eigen::VectorXd& change) {
     for (const double sign : {1.0, -1.0}) {
-      std::vector<Eigen::Index> changed;
+      Eigen::Index count = 0;
       for (Eigen::Index a = 0; a < change.size(); ++a) {
-        if (sign * change[a] > 0) changed.push_back(a);
-      }
-      if (changed.empty()) continue;
-      Eigen::MatrixXd features(skin_.features.rows(), changed.size());
-      for (std::size_t k = 0; k < changed.size(); ++k) {
-        const Eigen::Index a = changed[k];
-        features.col(k) =
+        if (!(sign * change[a] > 0)) continue;
+        changed_.col(count++) =
             std::sqrt(std::abs(change[a])) * skin_.features.col(a);
       }
-      sum_.selfadjointView<Eigen::Lower>().rankUpdate(features, sign);
+      if (count == 0) continue;
+      sum_.selfadjointView<Eigen::Lower>().rankUpdate(changed_.leftCols(count),
+                                                      sign);
     }
   }
 
   const Skin& skin_;
-  Eigen::VectorXd slope_;  // sums of r by directions
-  Eigen::MatrixXd sum_;    // 1 + Σ r φ φᵀ, its lower half
+  Eigen::VectorXd slope_;                   // sums of r by directions
+  Eigen::MatrixXd sum_;                     // 1 + Σ r φ φᵀ, its lower half
+  Eigen::VectorXd change_, load_, yields_;  // by directions, of one call
+  Eigen::MatrixXd changed_;  // √|change| φ, a column for each that changes
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
@@ -95,6 +95,7 @@ double FindLeast(const Eigen::VectorXd& slope, const Eigen::VectorXd& rest,
     double change;  // of the curvature
   };
   std::vector<Kink> kinks;
+  kinks.reserve(rest.size());
   double curvature = square;
   for (Eigen::Index i = 0; i < rest.size(); ++i) {
     const double rise = next[i] - rest[i];
