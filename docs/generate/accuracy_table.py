@@ -57,7 +57,6 @@ from drake_haptics.scene.scene_file import load_scene
 _DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = _DOCS / "verification" / "accuracy.md"
 ADVICE_PAGE = _DOCS / "accuracy.md"
-PICTURE = _DOCS / "accuracy_cup_spoon.png"
 SCENES = ("cup_spoon", "rubbed_sphere")
 BUDGET_SCENES = (*SCENES, "torus_peg")
 _BUDGET_RUNS = 3
@@ -69,6 +68,11 @@ BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "give
 # Knob, setting, and times of tick and core are before the errors; energy is the last.
 ERRORS = slice(4, 8)
 _DPI = 90
+
+
+def get_picture(name: str) -> Path:
+    """Returns the file of the picture of a scene."""
+    return _DOCS / f"accuracy_{name}.png"
 
 
 def make_columns() -> str:
@@ -255,7 +259,8 @@ def main() -> None:
             ADVICE_PAGE.read_text(encoding="utf-8"), make_advice(studies), ADVICE_NAME
         )
         ADVICE_PAGE.write_text(advice, encoding="utf-8")
-        draw_study(studies[SCENES[0]]).savefig(PICTURE, dpi=_DPI)
+        for name, study in studies.items():
+            draw_study(study).savefig(get_picture(name), dpi=_DPI)
 
 
 if __name__ == "__main__":

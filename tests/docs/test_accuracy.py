@@ -16,8 +16,8 @@ from accuracy_table import (
     COLUMNS_NAME,
     ERRORS,
     PAGE,
-    PICTURE,
     SCENES,
+    get_picture,
     make_columns,
     make_prices,
     measure_errors,
@@ -25,6 +25,7 @@ from accuracy_table import (
     with_parts,
 )
 from command_line import invoke
+from markdown_page import read_table
 from page_parts import find_part, read_part
 
 from drake_haptics.evaluation.accuracy.knobs import list_settings
@@ -37,10 +38,8 @@ ADVICE = ADVICE_PAGE.read_text(encoding="utf-8")
 
 
 def rows_of(page: str, name: str) -> list[list[str]]:
-    """The cells of the table of a part, headings first, without the line below."""
-    rows = re.findall(r"^\| (.*) \|$", read_part(page, name), flags=re.MULTILINE)
-    cells = [row.split(" | ") for row in rows]
-    return [cells[0], *cells[2:]]
+    """Returns the cells of the table of a part, headings first."""
+    return read_table(read_part(page, name))
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -109,8 +108,10 @@ def test_the_columns_are_those_of_today() -> None:
     assert read_part(TEXT, COLUMNS_NAME).strip() == make_columns().strip()
 
 
-def test_the_picture_is_there() -> None:
-    assert PICTURE.name in ADVICE and PICTURE.is_file()
+@pytest.mark.parametrize("name", SCENES)
+def test_the_picture_of_a_scene_is_there(name: str) -> None:
+    picture = get_picture(name)
+    assert picture.name in ADVICE and picture.is_file()
 
 
 def test_commands_that_are_shown_have_options_that_exist() -> None:

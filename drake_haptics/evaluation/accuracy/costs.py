@@ -9,12 +9,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import cast
 
 import numpy as np
+from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.errors import HapticsError
@@ -28,6 +29,7 @@ from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.scene_file import load_scene, write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError, run
+from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.contact.contact_query import DepthSearch
 
 # A diagram that Python systems are part of is never freed: that it is kept here costs
@@ -38,6 +40,8 @@ _PASSES = 3
 _LONGEST_S = 1.0
 # Where nothing touches the tool, m.
 _FAR_M = 1e3
+# A scene runs this long before it is another one's turn, s.
+_PART_S = 0.25
 # A lap that is longer is cut.
 _LONGEST_LAP_S = 5.0
 
@@ -54,21 +58,69 @@ def cached_build(scene: Scene) -> HapticDiagram:
     return _BUILT[key]
 
 
-def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
-    """Runs a scene once in real time and returns what its ticks took.
+def time_in_turns(scenes: Sequence[Scene], duration_s: float) -> list[TickTimes]:
+    """Runs scenes in real time, in turns of a quarter of a second; returns their times.
 
     Between two ticks the processor rests and others use its caches, so that a tick
-    takes longer than in a loop that never waits.
+    takes longer than in a loop that never waits. What disturbs the machine for a while
+    disturbs all scenes alike, so that the ratios of their times hold.
+
+    Args:
+        scenes: Scenes to run, each from its start.
+        duration_s: Simulated duration of each scene, s.
 
     Raises:
-        RunError: The loop diverges.
+        RunError: A loop diverges.
         KeyboardInterrupt: At Ctrl-C.
     """
-    haptic = cached_build(scene)
-    pace = RealTimePacer(haptic.period_s)
-    done = run(haptic, duration_s, pace=pace)
-    times = done.tick_us
-    return TickTimes(done.ticks, times.median, times.p99, times.p99_9)
+    loops = [cached_build(scene) for scene in scenes]
+    paces = [RealTimePacer(loop.period_s) for loop in loops]
+    done = [
+        RunStatistics(loop.period_s, pace=pace)
+        for loop, pace in zip(loops, paces, strict=True)
+    ]
+    turns = [
+        _run_in_parts(*each, duration_s)
+        for each in zip(loops, paces, done, strict=True)
+    ]
+    while turns:
+        turns = [turn for turn in reversed(turns) if next(turn, None)]
+    return [
+        TickTimes(each.ticks, times.median, times.p99, times.p99_9)
+        for each, times in ((each, each.tick_us) for each in done)
+    ]
+
+
+def _run_in_parts(
+    haptic: HapticDiagram,
+    pace: RealTimePacer,
+    statistics: RunStatistics,
+    duration_s: float,
+) -> Iterator[bool]:
+    """Runs a scene and yields True after each part but the last."""
+    context: Context | None = None
+    total = round(duration_s / haptic.period_s)
+
+    def end_tick(root: Context) -> bool:
+        nonlocal context
+        # This tick is counted already.
+        is_end = statistics.ticks in (total, part_end)
+        if is_end:
+            context = root.Clone()
+        return is_end
+
+    while statistics.ticks < total:
+        part_end = statistics.ticks + round(_PART_S / haptic.period_s)
+        pace.pause()
+        run(haptic, pace=pace, on_tick=end_tick, context=context, statistics=statistics)
+        if statistics.ticks < total:
+            yield True
+
+
+def scale_times(times: TickTimes, ours: TickTimes, other: TickTimes) -> TickTimes:
+    """Returns times multiplied by how much longer others take than ours."""
+    factors = np.array(astuple(other)[1:]) / np.array(astuple(ours)[1:])
+    return TickTimes(other.ticks, *(factors * astuple(times)[1:]).tolist())
 
 
 def combine(repeats: Sequence[TickTimes]) -> TickTimes:
@@ -176,7 +228,7 @@ def _main(file: str) -> None:
     scene = load_scene(file)
     lap_s = make_hand_path(scene.hand.path).duration_s
     try:
-        times = time_ticks(scene, min(lap_s, _LONGEST_LAP_S))
+        (times,) = time_in_turns([scene], min(lap_s, _LONGEST_LAP_S))
     except (HapticsError, RunError) as error:
         sys.exit(str(error))
     print(repr(times.p99_us))

@@ -24,8 +24,9 @@ from drake_haptics.evaluation.accuracy.costs import (
     cached_build,
     combine,
     make_native_part,
+    scale_times,
+    time_in_turns,
     time_native,
-    time_ticks,
 )
 from drake_haptics.evaluation.accuracy.figures import (
     NOT_SOUGHT,
@@ -58,8 +59,6 @@ from drake_haptics.scene.schema import Scene
 _COUNTED_TICKS = 500
 Task = dict[str, Any]
 Progress = Callable[[str, float], None]
-# Runs of each setting, in turns.
-_REPEATS = 3
 # Longest motion of a quick study, simulated.
 _QUICK_S = 1.0
 # Shares of all work that are done when something begins.
@@ -90,7 +89,7 @@ class Measurement:
 
         Args:
             task: `what` ("errors", "instructions", "native" or "ticks") and the
-                `setting`; of times also the machine and the number of the repeat.
+                `setting`; of times also the machine.
         """
         scene = Setting.from_dict(task["setting"]).apply(self.scene)
         measure = getattr(self, f"_measure_{task['what']}")
@@ -122,7 +121,8 @@ class Measurement:
         return {"errors": asdict(errors), "pieces": pieces}
 
     def _measure_ticks(self, scene: Scene) -> dict[str, Any]:
-        return asdict(time_ticks(scene, self.duration_s))
+        own, ours = time_in_turns([scene, self.scene], self.duration_s)
+        return {"own": asdict(own), "scene": asdict(ours)}
 
     def _measure_instructions(self, scene: Scene) -> dict[str, Any]:
         haptic = cached_build(scene)
@@ -143,25 +143,19 @@ def make_task(what: str, setting: Setting, **more: Any) -> Task:
 
 
 def list_timing_tasks(
-    settings: Sequence[Setting], repeats: int, machine: Mapping[str, str | int]
+    settings: Sequence[Setting], machine: Mapping[str, str | int]
 ) -> list[Task]:
-    """Returns what to time, in turns that each begin at another setting.
-
-    So a machine that becomes slower or faster does so for all settings alike.
+    """Returns what to time of each setting.
 
     Args:
-        settings: To be timed.
-        repeats: Runs of each.
-        machine: On which; another one's times are others.
+        settings: Settings to time.
+        machine: Machine that times them; another one's times are others.
     """
-    tasks = [make_task("native", setting, machine=machine) for setting in settings]
-    for repeat in range(repeats):
-        first = repeat * len(settings) // repeats
-        tasks += [
-            make_task("ticks", setting, machine=machine, repeat=repeat)
-            for setting in [*settings[first:], *settings[:first]]
-        ]
-    return tasks
+    return [
+        make_task(what, setting, machine=machine)
+        for what in ("native", "ticks")
+        for setting in settings
+    ]
 
 
 def make_row(
@@ -196,23 +190,34 @@ def make_row(
     return Row(
         setting=setting,
         is_scene=is_scene,
-        cost=_make_cost(own),
+        cost=_make_cost(own, is_scene, _find_scene_times(done)),
         errors=_make_errors(own["errors"]),
         pieces=_read_pieces(own["errors"]),
         failure_reason=reasons[0] if reasons else "",
     )
 
 
-def _make_cost(own: Mapping[str, Sequence[Mapping[str, Any]]]) -> Cost | None:
-    counts = own["instructions"]
-    if any(
-        "failure_reason" in result
-        for result in [*own["native"], *own["ticks"], *counts]
-    ):
+def _find_scene_times(
+    done: Sequence[tuple[Task, Mapping[str, Any]]],
+) -> TickTimes:
+    """Returns the times of the scene's own ticks, of all runs beside a setting."""
+    runs = [result["scene"] for _, result in done if "scene" in result]
+    return combine([TickTimes(**times) for times in runs])
+
+
+def _make_cost(
+    own: Mapping[str, Sequence[Mapping[str, Any]]], is_scene: bool, scene: TickTimes
+) -> Cost | None:
+    results = [
+        own[what][0] for what in ("native", "ticks", "instructions") if own[what]
+    ]
+    if any("failure_reason" in result for result in results):
         return None
+    ticks, counts = own["ticks"][0], own["instructions"]
+    pair = (TickTimes(**ticks["scene"]), TickTimes(**ticks["own"]))
     return Cost(
-        tick=combine([TickTimes(**result) for result in own["ticks"]]),
-        native=combine([TickTimes(**result) for result in own["native"]]),
+        tick=scene if is_scene else scale_times(scene, *pair),
+        native=TickTimes(**own["native"][0]),
         instructions=counts[0]["instructions"] if counts else None,
     )
 
@@ -304,7 +309,7 @@ def run_accuracy_study(
     measured_of = _find_measured(scene, settings)
     measured = [s for s, same in zip(settings, measured_of, strict=True) if s is same]
     machine = describe_machine()
-    timing = list_timing_tasks(measured, 1 if quick else _REPEATS, machine)
+    timing = list_timing_tasks(measured, machine)
     counts = [make_task("instructions", s) for s in measured if count_instructions]
     done: list[tuple[Task, dict[str, Any]]] = []
     for stage in (

@@ -9,6 +9,8 @@ from drake_haptics.evaluation.accuracy.costs import (
     cached_build,
     combine,
     make_native_part,
+    scale_times,
+    time_in_turns,
     time_native,
 )
 from drake_haptics.evaluation.accuracy.native_part import count_native
@@ -30,24 +32,29 @@ def test_of_several_runs_each_figure_is_the_middle():
     assert combine(repeats) == TickTimes(5, 8, 20, 31)
 
 
-def test_turns_begin_each_time_at_another_setting():
-    settings = [Setting("k", label, {"k": label}) for label in "abcdef"]
-    tasks = list_timing_tasks(settings, 3, {"processor": "x"})
-    assert [t["setting"]["label"] for t in tasks if t["what"] == "native"] == [
-        *"abcdef"
-    ]
-    turns = [
-        "".join(
-            t["setting"]["label"]
-            for t in tasks
-            if t["what"] == "ticks" and t["repeat"] == repeat
-        )
-        for repeat in range(3)
-    ]
-    assert turns == ["abcdef", "cdefab", "efabcd"]
-    # Another machine's times are other tasks.
-    elsewhere = list_timing_tasks(settings, 3, {"processor": "y"})
+def test_times_of_another_machine_are_other_tasks():
+    settings = [Setting("k", label, {"k": label}) for label in "abc"]
+    tasks = list_timing_tasks(settings, {"processor": "x"})
+    elsewhere = list_timing_tasks(settings, {"processor": "y"})
     assert not any(task in elsewhere for task in tasks)
+
+
+def test_times_are_scaled_as_the_scene_beside_them_ran():
+    usual, disturbed = (
+        TickTimes(9, 100.0, 200.0, 300.0),
+        TickTimes(9, 200.0, 800.0, 900.0),
+    )
+    own = TickTimes(5, 100.0, 400.0, 1800.0)
+    assert scale_times(usual, disturbed, own) == TickTimes(5, 50.0, 100.0, 600.0)
+
+
+def test_scenes_that_take_turns_run_as_alone():
+    """Each is run to its end, at its own rate, and goes on where its turn ended."""
+    fast, slow = _load("shared"), _load("shared")
+    fast.device.rate_hz = 2000.0
+    times = time_in_turns([fast, slow], 0.6)
+    assert [each.ticks for each in times] == [1200, 600]
+    assert all(0.0 < each.median_us < each.p99_us <= each.p99_9_us for each in times)
 
 
 def _load(clustering):
