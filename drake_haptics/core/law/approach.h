@@ -7,14 +7,14 @@
 
 namespace drake_haptics {
 
-/// What a damper sees that works on approach only. At rest it works in half of
-/// every small motion, and what is linear there is the mean of both halves.
+/// Approach speed for a damper that works on approach only. At rest it works in
+/// half of all small motions, and its linearization is the mean of both halves.
 template <typename T>
 struct Approach {
-  /// Slower than this, m/s, surfaces rest.
+  /// Surfaces slower than this are at rest, m/s.
   static constexpr double kAtRest = 1e-9;
 
-  double engaged;  ///< in how far it works: 1, ½ at rest, 0 on parting
+  double engaged;  ///< weight: 1 on approach, ½ at rest, 0 on parting
   T speed;         ///< m/s, at most 0
 
   /// @param v speed at which the surfaces part, m/s.

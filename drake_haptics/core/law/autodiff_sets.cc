@@ -5,8 +5,8 @@
 namespace drake_haptics {
 namespace {
 
-// Each of these calls f for every number of one set and its like of another,
-// which may be of another scalar type.
+// Each of these calls f for every number of one set and its counterpart in
+// another, which may have another scalar type.
 
 template <typename A, typename B, typename F>
 void ZipNumbers(A& a, B& b, const F& f) {

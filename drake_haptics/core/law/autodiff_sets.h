@@ -8,8 +8,8 @@
 
 namespace drake_haptics {
 
-/// What crosses the abstract ports of a haptic loop of scalar type AutoDiff:
-/// a value with derivatives by `num_derivatives` variables.
+/// Value of the abstract ports of a haptic loop of scalar type AutoDiff: a set
+/// with derivatives by `num_derivatives` variables.
 template <typename Set>
 struct Differentiated {
   Set set;
@@ -21,20 +21,20 @@ using AutoDiffClusterSet = Differentiated<ClusterSetOf<AutoDiff>>;
 using AutoDiffPenaltyWrench = Differentiated<PenaltyWrenchOf<AutoDiff>>;
 using AutoDiffFrictionStep = Differentiated<FrictionStepOf<AutoDiff>>;
 
-/// The values alone.
+/// Returns the values without derivatives.
 ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set);
 ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set);
 MovingFrame ValuesOf(const MovingFrameOf<AutoDiff>& frame);
 PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench);
 FrictionStep ValuesOf(const FrictionStepOf<AutoDiff>& step);
 
-/// Replaces values by those of doubles, which are the same but for the order
-/// in which Eigen sums: what is decided further on is the same to the last bit.
-/// Constants get derivatives that are zero, so that all numbers have as many.
+/// Replaces values by those computed with doubles, which differ only by the
+/// order in which Eigen sums: later decisions are the same to the last bit.
+/// Constants get zero derivatives, so that all numbers have equally many.
 template <typename Set, typename Plain>
 void SetValues(const Plain& values, Differentiated<Set>* differentiated);
 
-/// A set without derivatives as one with derivatives that are zero.
+/// Returns a set without derivatives as one with zero derivatives.
 template <typename Set>
 Differentiated<Set> WithVariables(const Differentiated<Set>& constant,
                                   Eigen::Index num_derivatives);

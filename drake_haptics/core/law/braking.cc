@@ -18,7 +18,7 @@ using Mat4Of = Eigen::Matrix<T, 4, 4>;
 
 constexpr double kRounding = 0.1;  // ρ
 
-// W = w², w zero at touch and at D, one half-way.
+// W = w², where w is 0 at touch and at D, and 1 half-way.
 template <typename T>
 T Weight(const ContactOf<T>& contact, const BrakingGains& gains) {
   const T s = contact.distance / gains.distance;
@@ -32,7 +32,7 @@ Vec4Of<T> Lift(const Vec3Of<T>& n) {
   return std::numbers::sqrt2 / 2 * Vec4Of<T>(T(1), n.x(), n.y(), n.z());
 }
 
-// The inverse of Σ W m mᵀ + ρ W I for any W > 0, from its principal axes.
+// Inverse of A = Σ W m mᵀ + ρ W I for any W > 0, from its principal axes.
 class RoundedInverse {
  public:
   explicit RoundedInverse(const Eigen::Matrix4d& sum) : axes_(sum) {}
@@ -65,7 +65,7 @@ class Shares {
 
   T operator()(const Vec3Of<T>& n, const T& W) const {
     const Vec4Of<T> m = Lift<T>(n);
-    // Stationary in x = A⁻¹ m, which therefore needs no derivatives.
+    // The leverage is stationary at x = A⁻¹ m, so x needs no derivatives.
     const Vec4Of<T> x =
         inverse_.Solve(ValuesOf(m), ValueOf(W)).template cast<T>();
     const Vec4Of<T> Ax = sum_ * x + T(kRounding * W) * x;
@@ -91,7 +91,7 @@ class Shares<double> {
   RoundedInverse inverse_;
 };
 
-// Spatial velocity's part along n at a point p of a moving frame.
+// Speed along n of the point C of a moving frame, m/s.
 template <typename T>
 T SpeedAlong(const Vec3Of<T>& n, const Vec3Of<T>& p_WC,
              const MovingFrameOf<T>& frame) {

@@ -22,8 +22,8 @@ struct Placed {
 
 template <typename T>
 Leaf LeafOf(const ContactOf<T>& contact, double delta) {
-  // Beyond this many leaves from the origin all addresses are the last one:
-  // positions that far carry no digits below delta.
+  // Addresses end this many leaves from the origin: positions that far have no
+  // digits below delta.
   constexpr double kFar = 4e18;
   Leaf leaf{contact.object};
   for (int i = 0; i < 3; ++i) {

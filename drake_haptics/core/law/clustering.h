@@ -30,20 +30,20 @@ template <typename T>
 struct ClusterSetOf {
   std::vector<ClusterOf<T>> clusters;
   std::vector<std::int32_t> label;  ///< cluster of each contact; -1 for none
-  /// How the compression of each cluster changes with the depth of each;
-  /// symmetric and positive semidefinite. Empty where each has its own.
+  /// Derivative of the compressions by the depths of all clusters; symmetric
+  /// and positive semidefinite. Empty if it is the identity.
   CompressionJacobianOf<T> coupling;
-  /// The search for the compressions met the bound on its steps: they push, but
-  /// are not quite those of the least energy. See SolveSkin.
+  /// The search for the compressions reached the bound on its steps: they push,
+  /// but their energy is not quite the least. See SolveSkin.
   bool is_bounded = false;
 };
 using ClusterSet = ClusterSetOf<double>;
 
-/// Groups contacts of the same object with an octree whose leaves have the
-/// size `delta`: contacts in one leaf are together, and adjacent occupied
-/// leaves (26 neighbors) are merged (paper, 4.2). Contacts closer than delta
-/// are always together, contacts of different clusters are at least delta
-/// apart; between delta and 2·√3·delta the leaves decide. Each member weighs
+/// Groups contacts of the same object with an octree whose leaves have the size
+/// `delta`: contacts in one leaf are together, and adjacent occupied leaves (26
+/// neighbors) are merged (paper, 4.2). Contacts closer than delta are always
+/// together, contacts of different clusters are at least delta apart; between
+/// delta and 2·√3·delta the leaves decide. The weight of a member is
 /// `tolerance` − distance. The force jumps where a contact crosses a cell or
 /// clusters merge: see ShareStiffness.
 /// @param delta leaf size, m.
@@ -54,8 +54,8 @@ template <typename T>
 void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
                      double tolerance, ClusterSetOf<T>* out);
 
-/// Fills the clusters of contacts that are grouped by `out->label`. A change of
-/// scalar type keeps the groups, and which member is the deepest.
+/// Computes the clusters of contacts that are grouped by `out->label`. With
+/// another scalar type, groups and their deepest members are the same.
 template <typename T>
 void RepresentClusters(const std::vector<ContactOf<T>>& contacts,
                        double tolerance, ClusterSetOf<T>* out);

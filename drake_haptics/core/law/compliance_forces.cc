@@ -8,10 +8,10 @@
 namespace drake_haptics {
 namespace {
 
-// What rounding leaves of a zero, relative to the largest depth.
+// Round-off of a zero, relative to the largest depth.
 constexpr double kNoise = 1e-12;
 
-// The contacts that push, summed up by directions.
+// Sums over the contacts that push, by direction.
 class Pressed {
  public:
   explicit Pressed(const Skin& skin)
@@ -21,8 +21,8 @@ class Pressed {
                                        skin.features.rows())),
         changed_(skin.features.rows(), skin.features.cols()) {}
 
-  // Solves for what the skin yields by, u = M Σ r w φ, and how much deeper each
-  // contact is than that, w − φᵀ u: above 0 where it pushes, by λ / r.
+  // Solves for the yield of the skin, u = M Σ r w φ, and how much deeper each
+  // contact is, w − φᵀ u: λ / r, above 0, where it pushes.
   void Press(const std::vector<char>& is_pushing) {
     change_ = slope_;
     slope_.setZero();
@@ -48,8 +48,8 @@ class Pressed {
   Eigen::VectorXd yield, rest;
 
  private:
-  // Adds Σ change φ φᵀ, of the directions whose slope becomes more and of those
-  // whose becomes less.
+  // Adds Σ change φ φᵀ, over the directions with rising slopes, then over those
+  // with falling ones.
   void Add(const Eigen::VectorXd& change) {
     for (const double sign : {1.0, -1.0}) {
       Eigen::Index count = 0;
@@ -65,10 +65,10 @@ class Pressed {
   }
 
   const Skin& skin_;
-  Eigen::VectorXd slope_;                   // sums of r by directions
+  Eigen::VectorXd slope_;                   // sums of r by direction
   Eigen::MatrixXd sum_;                     // 1 + Σ r φ φᵀ, its lower half
-  Eigen::VectorXd change_, load_, yields_;  // by directions, of one call
-  Eigen::MatrixXd changed_;  // √|change| φ, a column for each that changes
+  Eigen::VectorXd change_, load_, yields_;  // by direction, of one call
+  Eigen::MatrixXd changed_;  // √|change| φ, a column for each change
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
@@ -82,12 +82,12 @@ bool IsRight(const Eigen::VectorXd& rest, double noise,
   return true;
 }
 
-// Where along a step the energy is least, as a share of it. The step leads to
-// the least energy that there were if contacts neither began to push on the way
-// nor ceased to.
+// Returns the share of a step at which the energy is least. The whole step
+// would lead to the least energy if no contact began or ceased to push on the
+// way.
 // @param rest, next how much deeper each contact is than the skin yields,
 //     before and after the step.
-// @param square of the step's length.
+// @param square squared length of the step.
 double FindLeast(const Eigen::VectorXd& slope, const Eigen::VectorXd& rest,
                  const Eigen::VectorXd& next, double square) {
   struct Kink {
@@ -118,7 +118,7 @@ double FindLeast(const Eigen::VectorXd& slope, const Eigen::VectorXd& rest,
   return at - climb / curvature;
 }
 
-// The forces of those that push.
+// Forces of the contacts that push.
 ComplianceForces Answer(const Skin& skin, const Pressed& pressed,
                         const std::vector<char>& is_pushing,
                         const Eigen::VectorXd& rest) {
@@ -127,7 +127,7 @@ ComplianceForces Answer(const Skin& skin, const Pressed& pressed,
                          pressed.factor()};
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!is_pushing[i]) continue;
-    // Less what rounding leaves below zero.
+    // Rounding may leave it below zero.
     found.compression[i] = skin.slope[i] * std::max(0.0, rest[i]);
     found.slope[i] = skin.slope[i];
   }
@@ -138,7 +138,7 @@ ComplianceForces Answer(const Skin& skin, const Pressed& pressed,
 
 ComplianceForces SolveSkin(const Skin& skin, int max_steps) {
   const double noise = kNoise * skin.depth.maxCoeff();
-  // A skin that has not yielded: all push.
+  // The skin has not yielded yet: all push.
   std::vector<char> is_pushing(skin.depth.size(), 1);
   Eigen::VectorXd yield = Eigen::VectorXd::Zero(skin.features.rows());
   Eigen::VectorXd rest = skin.depth;
@@ -165,7 +165,7 @@ ComplianceForces SolveSkin(const Skin& skin, int max_steps) {
 
 MovingComplianceForces SolveSkin(const MovingCompression& skin,
                                  const std::vector<char>& is_pushing) {
-  // C of those that push, apart from the others, which have a 1.
+  // C of the contacts that push. The others have rows of the identity.
   MatrixOf<AutoDiff> C = skin.common;
   for (Eigen::Index i = 0; i < C.rows(); ++i) {
     if (is_pushing[i]) {
@@ -200,7 +200,7 @@ MovingComplianceForces SolveSkin(const MovingCompression& skin,
   }
   found.compression = found.together * skin.depth;
   for (AutoDiff& compression : found.compression) {
-    // What rounding leaves below zero.
+    // Rounding may leave it below zero.
     if (!(compression > 0.0)) compression = AutoDiff(0.0);
   }
   return found;

@@ -17,34 +17,31 @@ struct Skin {
   Eigen::MatrixXd features;             ///< φ, a column for each direction
 };
 
-/// The forces, over the stiffness, and what CompressionJacobian keeps of how
-/// they change with the depths.
+/// Forces, over the stiffness, and the data of their CompressionJacobian.
 struct ComplianceForces {
   Eigen::VectorXd compression;  ///< λ, m
   Eigen::VectorXd slope;        ///< r where λ > 0, else 0
   Eigen::MatrixXd factor;       ///< L, L Lᵀ = 1 + Σ r φ φᵀ over these
-  /// The search met the bound on its steps: the forces push, and their energy
-  /// is not quite the least.
+  /// The search reached the bound on its steps: the forces push, but their
+  /// energy is not quite the least.
   bool is_bounded = false;
 };
 
-/// More than twice what the hardest of random skins have needed: 49 of 1,000
-/// contacts, 26 of 100.
+/// More than twice the steps that the hardest random skins have needed: 49 for
+/// 1,000 contacts, 26 for 100.
 inline constexpr int kMaxSkinSteps = 128;
 
-/// Finds λ >= 0 with y >= w, and y = w where λ > 0: the one minimum of
-/// ½ λᵀ y(λ) − wᵀ λ. It has λ_i = r_i (w_i − φ_aᵀ u)₊, where u, what the skin
-/// yields by as a whole, makes
+/// Finds λ >= 0 with y >= w, and y = w where λ > 0: the only minimum of
+/// ½ λᵀ y(λ) − wᵀ λ. There λ_i = r_i (w_i − φ_aᵀ u)₊, where u, the common yield
+/// of the skin, minimizes
 ///   ½ uᵀ u + ½ Σ r_i (w_i − φ_aᵀ u)₊²
-/// least. That is convex, with pieces that are quadratic, and u is of as many
-/// numbers as there are features: Newton's method with an exact search along
-/// each step never ascends and ends at the minimum (Sun 1997). The time of a
-/// step grows with the contacts, and with the directions and the square of the
-/// features.
+/// This is convex and piecewise quadratic, and u has as many entries as there
+/// are features: Newton's method with an exact search along each step never
+/// ascends and ends at the minimum (Sun 1997). The time of a step grows with
+/// the contacts, and with the directions times the square of the features.
 ComplianceForces SolveSkin(const Skin& skin, int max_steps = kMaxSkinSteps);
 
-/// The same with derivatives, under which each contact has a direction of its
-/// own.
+/// The same with derivatives. Each contact has its own direction here.
 struct MovingCompression {
   VectorOf<AutoDiff> depth;   ///< w, m
   VectorOf<AutoDiff> slope;   ///< r
@@ -55,7 +52,7 @@ struct MovingComplianceForces {
   MatrixOf<AutoDiff> together;     ///< H
 };
 
-/// The forces of contacts of which it is known which push. What these bear
+/// Solves for the forces of contacts if it is known which of them push. Their H
 /// changes with C = φᵀ φ + 1/r by −H dC H.
 MovingComplianceForces SolveSkin(const MovingCompression& skin,
                                  const std::vector<char>& is_pushing);

@@ -10,25 +10,25 @@
 
 namespace drake_haptics {
 
-/// How the compressions of clusters change with their depths, H = dλ/dw. With
-/// slopes r_i and features φ_a of the directions a, which say what contacts
-/// have in common (skin_forces.h),
+/// Derivative of the clusters' compressions by their depths, H = dλ/dw. With
+/// slopes r_i and features φ_a of the directions a, whose products are the
+/// common compliance (compliance_forces.h),
 ///   H_ij = [i = j] r_i − r_i r_j φ_aᵀ M φ_b,  M = (1 + Σ_i r_i φ_a φ_aᵀ)⁻¹.
-/// It is as long as the clusters and the directions, not the square of either.
+/// Its size grows with the clusters and the directions, not with their squares.
 struct CompressionJacobian {
   struct Member {
     double slope = 0;  ///< r_i, 0 where the cluster does not push
-    /// In `skins`, that of its object; −1 for one that is alone, with H = 1.
+    /// Index in `skins`, one per object; −1 for a single cluster, with H = 1.
     std::int32_t skin = -1;
     std::int32_t direction = 0;
   };
   struct Skin {
     Eigen::MatrixXd features;  ///< φ, a column for each direction
-    Eigen::MatrixXd factor;    ///< L below the diagonal and on it, L Lᵀ = M⁻¹
+    Eigen::MatrixXd factor;    ///< L in its lower half, L Lᵀ = M⁻¹
   };
-  /// One for each cluster. None where each has its own: H is the identity.
+  /// One for each cluster, or none if H is the identity.
   std::vector<Member> members;
-  std::vector<Skin> skins;  ///< those of an object's clusters, in their order
+  std::vector<Skin> skins;  ///< one per object with several clusters
 
   bool empty() const { return members.empty(); }
   void clear() {
@@ -50,18 +50,19 @@ struct CompressionJacobian {
   }
 };
 
-/// The same with derivatives, under which equal normals may turn apart: all of
-/// H, object by object.
+/// The same with derivatives. Equal normals may turn apart, so all of H is
+/// stored, object by object.
 struct MovingCompressionJacobian {
-  /// The row of a cluster covers those of its object: `count` from `first` on.
+  /// The row of a cluster covers the clusters of its object: `count` from
+  /// `first` on.
   struct Member {
     std::int32_t first = 0;
     std::int32_t count = 0;
-    std::size_t row = 0;  ///< where in `together` its row begins
+    std::size_t row = 0;  ///< start of its row in `together`
   };
   std::vector<Member> members;     ///< as in CompressionJacobian
   std::vector<AutoDiff> together;  ///< H by rows, one object after another
-  /// The same without derivatives, for sums that are the same to the last bit.
+  /// The same without derivatives, so that sums agree to the last bit.
   CompressionJacobian values;
 
   bool empty() const { return members.empty(); }

@@ -5,7 +5,7 @@
 namespace drake_haptics {
 namespace {
 
-// A point that is fixed to a body.
+// Moves a point with its body.
 template <typename T>
 Vec3Of<T> Carry(const MovedBodyOf<T>& body, const Vec3Of<T>& p_W) {
   return body.X_WB.p + body.Turn() * (p_W - body.X_WB_found.p);

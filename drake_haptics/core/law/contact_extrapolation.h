@@ -12,18 +12,18 @@
 
 namespace drake_haptics {
 
-/// Carries contacts along with the bodies, for ticks at which none are looked
-/// for. No contact comes or goes, and its features stay: distance, normal and
-/// witness points are theirs (frozen_features.h), but centers of pressure stay
-/// each on its body.
+/// Moves contacts along with the bodies at ticks without a query. No contact
+/// comes or goes, and each keeps its features, which give distance, normal and
+/// witness points (frozen_features.h); but centers of pressure stay fixed to
+/// their bodies.
 ///
-/// A vertex over a facet and two edges are carried exactly, while these are the
-/// features of the contact, and a vertex near a vertex or an edge to first
-/// order in the motion. Where other features are nearer by then, the distance
-/// is wrong by what is of second order in the motion.
+/// Contacts of a vertex over a facet and of two edges are exact while these are
+/// their features; those of a vertex near a vertex or an edge are exact to
+/// first order in the motion. If other features are nearer by then, the error
+/// of the distance is of second order in the motion.
 class ContactExtrapolation {
  public:
-  /// @param X_WO for each object its pose, if it never moves.
+  /// @param X_WO pose of each object that never moves; none for the others.
   /// @throws std::invalid_argument if a body is missing or their numbers
   /// differ.
   ContactExtrapolation(
@@ -31,13 +31,13 @@ class ContactExtrapolation {
       std::vector<std::shared_ptr<const Decomposition>> objects,
       std::vector<std::optional<Pose>> X_WO);
 
-  /// How many objects move.
+  /// Number of objects that move.
   int num_moving() const { return num_moving_; }
 
   /// @param moving the objects that move, in their order.
   /// @param contacts as a query found them, not shaded.
   /// @throws std::invalid_argument unless `moving` has one entry for each
-  ///         and each contact names its features,
+  ///         moving object and each contact names its features,
   ///         std::out_of_range for a contact on an object, piece, vertex or
   ///         edge that does not exist.
   template <typename T>
@@ -49,7 +49,7 @@ class ContactExtrapolation {
   std::shared_ptr<const Decomposition> tool_;
   std::vector<std::shared_ptr<const Decomposition>> objects_;
   std::vector<std::optional<Pose>> X_WO_;
-  std::vector<int> place_;  // among those that move
+  std::vector<int> place_;  // index among those that move, or -1
   int num_moving_ = 0;
 };
 

@@ -9,12 +9,12 @@
 namespace drake_haptics {
 namespace {
 
-// Cells of normals and of the logarithm of depths.
+// Cell sizes of normals and of the logarithm of depths.
 constexpr double kTurnCell = 0.02;
 constexpr double kDepthCell = 0.02;
 
-// Flush or not, depth, and normal, whose parts are in the middle of a cell
-// where they are 0 or 1.
+// Flush or not, depth, and normal. Cells are centered at normal components of 0
+// and 1.
 using Key = std::array<std::int32_t, 5>;
 
 Key KeyOf(const GroupedContact& contact) {

@@ -8,7 +8,7 @@
 
 namespace drake_haptics {
 
-/// What tells flush contacts apart.
+/// Properties that tell flush contacts apart.
 struct GroupedContact {
   Vec3 nhat_BA_W;
   double depth;      ///< below the tolerance, m, above 0
@@ -16,25 +16,25 @@ struct GroupedContact {
   std::size_t contact;
 };
 
-/// Contacts of nearly one direction and depth.
+/// Contacts of nearly the same direction and depth.
 struct ContactGroup {
   std::span<const GroupedContact> members;
-  double shallowest, deepest;  ///< of the depths, m
+  double shallowest, deepest;  ///< bounds of the depths, m
   double least_flushness;
   Vec3 nhat_BA_W;
-  double spread;  ///< |n − nhat_BA_W| of its members is no more
+  double spread;  ///< bound of |n − nhat_BA_W| over the members
 };
 
-/// Bounds for all pairs of a contact of one group and one of another.
+/// Bounds for all pairs of contacts from two groups.
 struct GroupBounds {
-  /// Of the shallower contact's depth over the deeper one's.
+  /// Shallower depth over deeper depth.
   double least_ratio, most_ratio;
-  double least_turn, most_turn;  ///< of 1 − cos of the angle of their normals
+  double least_turn, most_turn;  ///< 1 − cos of the normals' angle
 };
 
-/// Sorts contacts and splits them up into groups, in time n log n. Where they
-/// are split is a matter of speed alone.
-/// @param contacts stays as long as the groups, which refer to it.
+/// Sorts contacts and splits them into groups, in time n log n. Where they are
+/// split affects speed only.
+/// @param contacts must outlive the groups, which refer to it.
 std::vector<ContactGroup> GroupContacts(std::vector<GroupedContact>* contacts);
 
 GroupBounds BoundGroups(const ContactGroup& one, const ContactGroup& other);

@@ -15,17 +15,17 @@ namespace {
 // 1 − cos(3°): contacts of flush features within that angle can be one
 // constraint, wherever they are.
 constexpr double kSamePlane = 1.37e-3;
-// 1 − cos(45°): the same for contacts in one place, as on the facets of a
-// surface that is smooth.
+// 1 − cos(45°): the same for contacts at one place, as on the facets of a
+// smooth surface.
 constexpr double kSameDirection = 0.293;
-// Contacts at depths below the tolerance that differ by less than this share
-// can be one constraint. A share, not a length: how fast contacts part must not
-// depend on how deep they are.
+// Contacts whose depths below the tolerance differ by less than this share can
+// be one constraint. A share, not a length, so that the transition does not
+// depend on the depth.
 constexpr double kSameDepth = 0.25;
-// Contacts that are nearly the same count as wholly so: what little is missing
-// would leave each a spring of its own.
+// Contacts that are nearly the same count as fully the same: the small rest
+// would give each its own spring.
 constexpr double kFullSimilarity = 1.25;
-// Added to extents (m²), so that those of no extent are shared equally.
+// Added to extents (m²), so that contacts without extent share equally.
 constexpr double kLeastExtent = 1e-24;
 
 template <typename T>
@@ -34,13 +34,13 @@ T Fade(const T& distance, const T& width) {
   return width > 0.0 ? std::max<T>(0.0, T(1 - distance / width)) : T(0);
 }
 
-// How far a flush face or edge reaches, m: as far as an edge of its extent.
+// Reach of a flush face or edge, m: the length of an edge of its extent.
 template <typename T>
 T Reach(const ContactOf<T>& contact, double tolerance) {
   return contact.flushness * contact.extent / PressureLayer(tolerance);
 }
 
-// In how far two contacts are parts of one constraint, 0 to 1.
+// Degree to which two contacts are parts of one constraint, 0 to 1.
 template <typename T>
 T Similarity(const ContactOf<T>& a, const ContactOf<T>& b, double tolerance) {
   using std::abs;
@@ -60,16 +60,16 @@ T Similarity(const ContactOf<T>& a, const ContactOf<T>& b, double tolerance) {
                             std::max(in_one_plane, in_one_place)));
 }
 
-// Whether all contacts within the bounds are wholly the same, by their planes.
+// Whether all contacts within the bounds are fully the same, by their planes.
 bool AreSame(const GroupBounds& bounds, double flushness) {
-  // Rounding may not count as same what is not.
+  // Rounding must not make different contacts count as the same.
   constexpr double kSurely = 1 + 1e-9;
   return kFullSimilarity * Fade<double>(1 - bounds.least_ratio, kSameDepth) *
              Fade<double>(bounds.most_turn, kSamePlane) * flushness >=
          kSurely;
 }
 
-// Another contact that is in part the same as contact `of`.
+// Another contact that is partly the same as contact `of`.
 template <typename T>
 struct SimilarContact {
   std::size_t of;
@@ -77,7 +77,7 @@ struct SimilarContact {
   T extent;
 };
 
-// A contact along the axis in which all are farthest apart.
+// Place of a contact on the axis along which all extend farthest.
 struct AlongAxis {
   double at;     // m
   double reach;  // m
@@ -95,10 +95,10 @@ class ContactSimilarity {
     SortSimilar();
   }
 
-  // A contact's share of the extent of those that are more than θ the same,
-  // averaged over θ from 0 to 1. Where each is wholly the same or not at all
-  // that is its share of the whole; in between it changes with the sameness by
-  // no more than one to one, however different the extents.
+  // A contact's share of the extent of those with a sameness above θ, averaged
+  // over θ from 0 to 1. If each sameness is 0 or 1, it is the share of the
+  // whole; in between it changes by no more than the sameness, however
+  // different the extents.
   VectorOf<T> Shares() const {
     VectorOf<T> shares(total_.size());
     auto next = similar_.begin();
@@ -119,7 +119,7 @@ class ContactSimilarity {
  private:
   T Extent(std::size_t i) const { return contacts_[i]->extent + kLeastExtent; }
 
-  // By contacts, the most alike first.
+  // Sorts by contact, the most similar first.
   void SortSimilar() {
     std::vector<std::size_t> end(total_.size() + 1, 0);
     for (const SimilarContact<T>& similar : similar_) ++end[similar.of];
@@ -138,7 +138,7 @@ class ContactSimilarity {
     similar_ = std::move(sorted);
   }
 
-  // Looks at the pairs that are near along the axis or both flush.
+  // Compares the pairs that are near along the axis or both flush.
   void Compare() {
     const std::vector<AlongAxis> placed = Place();
     double widest = 0;
@@ -183,7 +183,8 @@ class ContactSimilarity {
     return placed;
   }
 
-  // One that is not flush, with those near it that come after it on the axis.
+  // Compares a contact that is not flush with those near it after it on the
+  // axis.
   void CompareAfter(const std::vector<AlongAxis>& placed, std::size_t k,
                     double widest) {
     const double end = placed[k].at + tolerance_ + placed[k].reach + widest;
@@ -192,7 +193,7 @@ class ContactSimilarity {
     }
   }
 
-  // The same with those before it, of which only the flush ones are left.
+  // The same with those before it, of which only flush ones remain.
   void CompareFlushBefore(const std::vector<AlongAxis>& placed, std::size_t k,
                           double widest) {
     const double end = placed[k].at - tolerance_ - placed[k].reach - widest;
@@ -203,7 +204,7 @@ class ContactSimilarity {
     }
   }
 
-  // All pairs of flush contacts, those of two groups at once where they can.
+  // Compares all pairs of flush contacts, whole groups at once if possible.
   void CompareFlush(const std::vector<ContactGroup>& groups) {
     for (auto one = groups.begin(); one != groups.end(); ++one) {
       for (auto other = one; other != groups.end(); ++other) {
@@ -259,7 +260,7 @@ class ContactSimilarity {
 
   std::span<const ContactOf<T>* const> contacts_;
   double tolerance_;
-  VectorOf<T> total_;  // extents of all that are wholly the same, m²
+  VectorOf<T> total_;  // extents of all that are fully the same, m²
   std::vector<SimilarContact<T>> similar_;
 };
 

@@ -7,11 +7,10 @@
 
 namespace drake_haptics {
 
-/// The share m of each contact of one object in the constraint that it is part
-/// of: its extent over that of all contacts at the same depth that are flush in
-/// one plane, or in one place with normals not far apart, as on the facets of a
-/// smooth surface. Contacts that are neither near each other nor both flush are
-/// never compared.
+/// Share m of each contact of one object in its constraint: its extent over
+/// that of all contacts at the same depth that are flush in one plane, or at
+/// one place with similar normals, as on the facets of a smooth surface.
+/// Contacts that are neither near each other nor both flush are never compared.
 /// @param contacts all nearer than `tolerance` (m).
 template <typename T>
 VectorOf<T> ContactShares(std::span<const ContactOf<T>* const> contacts,

@@ -36,7 +36,7 @@ void ThinContacts(const std::vector<ContactOf<T>>& contacts, double cell,
                    [&](std::size_t i, std::size_t j) {
                      return contacts[i].distance < contacts[j].distance;
                    });
-  // Deepest first; then those that stay return to their order.
+  // Deepest first; then those that stay return to the given order.
   std::vector<std::size_t> kept;
   std::vector<T> extent;
   for (const std::size_t i : order) {

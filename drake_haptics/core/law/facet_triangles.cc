@@ -14,7 +14,7 @@ bool IsBefore(const Vec3& p, const Vec3& q) {
   return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
 }
 
-// The facet of a piece that a triangle lies on, of those it is offered.
+// Selects the facet of a piece on which a triangle lies, among those offered.
 class BestFacet {
  public:
   BestFacet(const Polytope& piece, const std::array<Vec3, 3>& corners)
@@ -81,7 +81,7 @@ std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
           if (ring_entry.facet >= 0) best.Offer(ring_entry.facet);
         }
       }
-      // All corners inside a facet or on its sides.
+      // All corners are inside a facet or on its sides.
       if (best.facet() < 0) {
         for (int f = 0; f < std::ssize(piece.facets); ++f) best.Offer(f);
       }

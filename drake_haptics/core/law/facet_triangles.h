@@ -11,31 +11,31 @@
 
 namespace drake_haptics {
 
-/// Finds vertices of a piece by their coordinates, which are copies of those of
-/// the mesh.
+/// Finds vertices of a piece by their coordinates, which are copies of the
+/// mesh's.
 class PieceVertices {
  public:
   /// @param piece must outlive this.
   explicit PieceVertices(const Polytope& piece);
 
-  /// -1 if none is exactly there.
+  /// Vertex at exactly this point, or -1.
   int Find(const Vec3& point) const;
 
  private:
   const std::vector<Vec3>& vertices_;
-  std::vector<int> order_;  // by coordinates
+  std::vector<int> order_;  // vertices, sorted by coordinates
 };
 
-/// The original facet of a piece that each of its triangles lies on; -1 for a
-/// triangle without area. Corners that are vertices of the piece tell which few
-/// facets it can be; of those it is the one that the corners are nearest to.
+/// Returns the original facet on which each triangle of a piece lies; -1 for a
+/// triangle without area. Corners that are vertices of the piece leave few
+/// candidates, of which the facet nearest to the corners is taken.
 /// @param triangles indices of triangles of `mesh` that the piece was made
 ///        from.
 std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
                                    const Polytope& piece,
                                    std::span<const int> triangles);
 
-/// The point of a triangle that is nearest to a given one.
+/// Point of a triangle that is nearest to a given one.
 template <typename T>
 struct NearestInTriangleOf {
   /// Barycentric coordinates: at least 0, and 1 in sum.
@@ -44,7 +44,7 @@ struct NearestInTriangleOf {
 };
 
 /// @param corners of a triangle with an area, m.
-/// @param p in the plane of the triangle or near to it: what it is above the
+/// @param p in the plane of the triangle or near to it: its height above the
 ///        plane does not count.
 template <typename T>
 NearestInTriangleOf<T> FindNearestInTriangle(const std::array<Vec3, 3>& corners,

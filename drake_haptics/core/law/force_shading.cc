@@ -16,24 +16,24 @@ namespace {
 template <typename T>
 using Mat2Of = Eigen::Matrix<T, 2, 2>;
 
-// Curvature of what is flat, as a share of 1 / size: so little that a
-// plane prevails, yet two of them have a mean.
+// Curvature of a flat surface, as a share of 1 / size: so small that a plane
+// prevails, yet two planes have a mean.
 constexpr double kLeastCurvature = 1e-6;
 // A contact is shaded as if it were no deeper than this share of the radius:
 // at the center there is no direction.
 constexpr double kDeepest = 0.5;
 
-// What one body wants, in a frame whose z axis is the contact's normal.
+// Shading by one body, in a frame whose z axis is the contact's normal.
 template <typename T>
 struct Side {
-  Vec3Of<T> turn;       // of the normal
+  Vec3Of<T> turn;       // change of the normal
   Mat2Of<T> curvature;  // 1/m
   PrincipalAxes<T> of_curvature;
   T sharpness;
   double size;
 };
 
-// A unit vector across n, which turns with it.
+// A unit vector perpendicular to n, which turns with n.
 template <typename T>
 Vec3Of<T> TangentOf(const Vec3Of<T>& n) {
   if constexpr (std::is_same_v<T, double>) {
@@ -53,7 +53,8 @@ Mat3Of<T> MakeFrame(const Vec3Of<T>& n) {
   return frame;
 }
 
-// @param outward 1 if the contact's normal is out of this body, -1 if into it.
+// @param outward 1 if the contact's normal points out of this body, -1 if into
+//     it.
 template <typename T>
 Side<T> FindSide(const SurfaceShading& shading, const PoseOf<T>& X_WS,
                  int piece, const std::array<std::int32_t, 2>& feature,
@@ -68,7 +69,7 @@ Side<T> FindSide(const SurfaceShading& shading, const PoseOf<T>& X_WS,
           PrincipalAxes<T>(curvature), sheet.sharpness, shading.SizeOf(piece)};
 }
 
-// Its own curvature and that of the crease at it, which is without bound at it.
+// Curvature of a side plus that of its crease, which is infinite at the crease.
 template <typename T>
 T WithCrease(const Side<T>& side, const T& curvature) {
   const T flatness = 1 - side.sharpness;
@@ -77,16 +78,17 @@ T WithCrease(const Side<T>& side, const T& curvature) {
   return curvature + of_crease;
 }
 
-// A number that changes with another one, and how: in parts, linearly.
+// Value of a piecewise linear function, and its slope.
 template <typename T>
 struct Linear {
   T value;
   double slope;
 };
 
-// A hollow side has a negative radius. It tells where the other body touches as
-// long as that is more curved by far; two that conform touch anywhere, so that
-// from half the other's curvature on the hollow side becomes flat.
+// Curvature of a side, eased if it is concave (negative). A concave side
+// determines where a far more curved body touches; conforming bodies touch
+// anywhere, so that from half the other's curvature on the concave side becomes
+// flat.
 template <typename T>
 Linear<T> Eased(const T& curvature, const T& least_of_other) {
   if (curvature >= 0.0) return {curvature, 1};
@@ -97,7 +99,7 @@ Linear<T> Eased(const T& curvature, const T& least_of_other) {
   return {curvature, 1};
 }
 
-// m; zero at a crease.
+// Radii of curvature of a side, m; zero at a crease.
 template <typename T>
 Mat2Of<T> Radius(const Side<T>& side, const Side<T>& other) {
   const double least = kLeastCurvature / side.size;
@@ -111,7 +113,7 @@ Mat2Of<T> Radius(const Side<T>& side, const Side<T>& other) {
   });
 }
 
-// Nothing to turn by, now and nearby.
+// Whether the turn is zero, with its derivatives.
 bool IsNothing(const Vec3& turn) { return turn.isZero(0); }
 bool IsNothing(const Vec3Of<AutoDiff>& turn) {
   return std::all_of(turn.begin(), turn.end(), [](const AutoDiff& x) {
@@ -119,16 +121,15 @@ bool IsNothing(const Vec3Of<AutoDiff>& turn) {
   });
 }
 
-// What to add to the normal: the mean of what both sides want, weighted with
-// their radii, less by the factor by which the foot of a contact off the
-// surface is off.
+// Change of the normal: the mean of both sides, weighted with their radii, and
+// divided by the factor by which the foot of a contact off the surface is off.
 template <typename T>
 Vec3Of<T> Turn(const Side<T>& A, const Side<T>& B, const T& distance) {
   if (IsNothing(A.turn) && IsNothing(B.turn)) return Vec3Of<T>::Zero();
   const Mat2Of<T> radius_A = Radius(A, B), radius_B = Radius(B, A);
   const Mat2Of<T> inverse = (radius_A + radius_B).inverse();
   const Mat2Of<T> share_A = inverse * radius_A, share_B = inverse * radius_B;
-  // The inverse of the sum of all radii, as they are.
+  // Inverse of the sum of both radii, which are not eased here.
   const Mat2Of<T> curvature = share_A * A.curvature * share_A.transpose() +
                               share_B * B.curvature * share_B.transpose();
   const auto scale = [&](const T& c) -> Reciprocal<T> {
@@ -140,7 +141,7 @@ Vec3Of<T> Turn(const Side<T>& A, const Side<T>& B, const T& distance) {
   turn.template head<2>() = PrincipalAxes<T>(curvature).Map(scale) *
                             (share_A * A.turn.template head<2>() +
                              share_B * B.turn.template head<2>());
-  // Along the normal, where there is no curvature, that of the mean.
+  // Along the normal, which has no curvature, the mean curvature counts.
   const T twice_mean_z =
       T(share_A.trace() * A.turn.z()) + T(share_B.trace() * B.turn.z());
   turn.z() = scale(T(curvature.trace() / 2)).value * twice_mean_z / 2;

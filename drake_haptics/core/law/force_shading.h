@@ -10,34 +10,34 @@
 
 namespace drake_haptics {
 
-/// The largest turn of a contact's normal by shading, rad. A force along the
-/// shaded normal pushes whatever the mesh.
+/// Largest turn of a contact's normal by shading, rad. So a force along the
+/// shaded normal pushes, whatever the mesh.
 inline constexpr double kLargestShading = 0.7853981633974483;
 
-/// Turns the normals of contacts to those of the surfaces that the meshes stand
-/// for (force shading: paper, 4.4.1; Morgenbesser and Srinivasan 1996), so that
-/// the direction of the force does not jump from facet to facet. All else of a
-/// contact stays as it is.
+/// Turns the normals of contacts to those of the surfaces that the meshes
+/// approximate (force shading: paper, 4.4.1; Morgenbesser and Srinivasan 1996),
+/// so that the direction of the force does not jump from facet to facet.
+/// Nothing else of a contact changes.
 ///
-/// Let m_B be the normal of B interpolated at its witness point and −m_A that
-/// of A, r the radii of curvature of the shaded surfaces there, and d the
+/// Let m_B be the normal of B interpolated at its witness point and −m_A the
+/// same of A, r the radii of curvature of the shaded surfaces there, and d the
 /// signed distance. Then the shaded normal is the direction of
 ///
 ///     r_B m_B − r_A m_A + d n,
 ///
-/// taken for each direction of curvature by itself. For tessellated spheres
-/// with exact corner normals that is the line of their centers, for every pair
-/// of features and at every distance: r m is the witness point seen from the
-/// center. So where one surface has no normal of its own, a sharp corner or
-/// edge with r = 0, the other one gives it; a plane, or a cylinder along its
-/// axis, with r = ∞, prevails over what is curved; a hollow has r < 0; and the
-/// foot of a point that presses into a surface may jump from facet to facet
-/// while the normal does not. r falls to 0 at a crease within the angle in
+/// taken separately for each direction of curvature. For tessellated spheres
+/// with exact corner normals this is the line of their centers, for every pair
+/// of features and at every distance: r m is the witness point relative to the
+/// center. So if one surface has no normal of its own, a sharp corner or edge
+/// with r = 0, the other one gives it; a plane, or a cylinder along its axis,
+/// with r = ∞, prevails over a curved surface; a concave surface has r < 0; and
+/// the foot of a point that presses into a surface may jump from facet to facet
+/// while the normal does not. At a crease r falls to 0 within the angle at
 /// which a face beside it is flush (`SheetNormal::sharpness`). The normal is
 /// turned by `kLargestShading` at most.
 class ContactShading {
  public:
-  /// @param objects in the order of the query's.
+  /// @param objects in the query's order.
   /// @throws std::invalid_argument if one of them is null.
   ContactShading(std::shared_ptr<const SurfaceShading> tool,
                  std::vector<std::shared_ptr<const SurfaceShading>> objects);

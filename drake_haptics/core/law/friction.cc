@@ -13,7 +13,7 @@
 namespace drake_haptics {
 namespace {
 
-// The clusters that rub, in their order, and the normal forces that they bear.
+// The clusters with friction, and the normal forces that they bear.
 template <typename T>
 struct Rubbing {
   static constexpr int kCapacity = AdhesiveContactsOf<T>::kCapacity;
@@ -22,8 +22,9 @@ struct Rubbing {
   int size = 0;
 };
 
-// The strongest, if they are too many; they bear what the others of the same
-// object leave, so that friction on the whole stays what it is.
+// Selects the strongest clusters if there are too many. They also bear the
+// normal forces of the others on the same object, so that friction as a whole
+// stays the same.
 template <typename T>
 Rubbing<T> FindRubbing(const std::vector<ClusterOf<T>>& clusters,
                        const std::vector<T>& normal_forces,
@@ -75,7 +76,7 @@ void AddAt(const Vec3Of<T>& r, const FrictionForceOf<T>& force,
            WrenchModelOf<T>* wrench) {
   wrench->F.template head<3>() += r.cross(force.f_W);
   wrench->F.template tail<3>() += force.f_W;
-  // Displacement of the point by that of the tool, with the point frozen.
+  // Derivative of the point's displacement by the tool's, the point frozen.
   Eigen::Matrix<T, 3, 6> J;
   const T zero(0.0), one(1.0);
   J << zero, r.z(), -r.y(), one, zero, zero,  //
@@ -132,7 +133,7 @@ FrictionStepOf<T> StickSlipModel::Step(
     if (contact.object < 0 || contact.object >= num_objects()) continue;
     CarriedContactOf<T>& carried = last.items[last.size];
     carried = Carry(contact, tool_move, object_move(contact.object));
-    // A pose that was not a number must not stay in the state.
+    // A pose with NaN must not stay in the state.
     if (ValuesOf(carried.on_object.z_W).allFinite()) ++last.size;
   }
 

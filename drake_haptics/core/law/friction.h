@@ -16,20 +16,21 @@ struct FrictionStepOf {
   WrenchModelOf<T> tool;               ///< on the tool at To
   std::vector<Vec3Of<T>> f_cluster_W;  ///< on the tool, at each cluster, N
   std::vector<char> sliding;           ///< whether each cluster slides
-  T stored{0};                         ///< elastic energy of what sticks, J
+  T stored{0};                         ///< elastic energy of the contacts, J
   std::vector<T> next_state;
 };
 using FrictionStep = FrictionStepOf<double>;
 
 /// Stick-slip friction of a tool on objects, for the representative contacts of
-/// clusters (paper, 4.4.2). A function of the last tick's state and of what is
-/// now, without a sample of delay.
+/// clusters (paper, 4.4.2). It is a function of the last tick's state and of
+/// the present inputs, without a sample of delay.
 ///
 /// The state is [X_WT (7); X_WO (7) of each object that moves; 32 slots of
 /// AdhesiveContacts]: the poses and contacts of the last tick.
 class StickSlipModel {
  public:
-  /// @param coefficients μ of sliding of each object; none at 0.
+  /// @param coefficients sliding coefficient μ of each object; 0 for no
+  ///     friction.
   /// @param moves whether each object moves.
   /// @throws std::invalid_argument for parameters out of bounds.
   StickSlipModel(std::vector<double> coefficients,
@@ -43,8 +44,8 @@ class StickSlipModel {
                                        AdhesiveContactsOf<double>::kSlotSize;
   }
 
-  /// Friction on the clusters. If they are more than 32, the strongest bear the
-  /// normal force of all on their object.
+  /// Returns the friction on the clusters. If there are more than 32, the
+  /// strongest bear the normal force of all on their object.
   /// @param state of the last tick, state_size() long.
   /// @param normal_forces N of each cluster.
   /// @param q_WO poses of the objects that move, num_moving() of them.

@@ -5,7 +5,7 @@
 namespace drake_haptics {
 namespace {
 
-// How the force −k z, at most `limit`, will change over the motion u.
+// Stiffness of the force −k z, at most `limit`, over the motion u ahead.
 template <typename T>
 Mat3Of<T> StiffnessAhead(const T& k, const T& limit, const Vec3Of<T>& z,
                          const Vec3Of<T>& n, const Vec3Of<T>& motion) {

@@ -5,8 +5,8 @@
 namespace drake_haptics {
 namespace {
 
-// The index that a number of the state stands for, which who differentiates may
-// have moved a little; -1 if there is no such one.
+// Index that a number of the state stands for, or -1. Numerical differentiation
+// may have moved the number a little.
 int ToObject(double number) {
   const bool is_index =
       number > -1 && number <= std::numeric_limits<int>::max();

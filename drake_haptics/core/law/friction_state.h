@@ -7,15 +7,15 @@
 
 namespace drake_haptics {
 
-/// A contact as friction remembers it from one tick to the next, in the world.
-/// Nothing is preset: a list of them costs what is in it.
+/// A contact that friction remembers from one tick to the next, in the world.
+/// Members are not initialized, so that a list costs only what it holds.
 template <typename T>
 struct AdhesiveContactOf {
   int object;
   Vec3Of<T> p_WC;       ///< position, m
   Vec3Of<T> nhat_BA_W;  ///< unit normal, out of the object
   Vec3Of<T> z_W;        ///< displacement from the adhesion point, m
-  T load;               ///< normal force that the adhesion was formed under, N
+  T load;               ///< normal force under which adhesion formed, N
   T grip;  ///< 1 holds up to the static limit, 0 to the sliding one
 };
 
@@ -28,9 +28,9 @@ class AdhesiveContactsOf {
   /// Numbers per contact: object, p (3), n (3), z (3), load, grip.
   static constexpr int kSlotSize = 12;
 
-  /// Reads kCapacity slots; one without a load is empty, and so is all behind.
+  /// Reads kCapacity slots, up to the first without a load.
   static AdhesiveContactsOf Read(const T* slots);
-  /// Writes the slots, of which all are zero.
+  /// Writes the slots, which must be zero before.
   void Write(T* slots) const;
 
   void push_back(const AdhesiveContactOf<T>& contact) {

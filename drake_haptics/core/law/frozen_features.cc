@@ -11,7 +11,7 @@ template <typename T>
 struct Segment {
   Vec3Of<T> start, along;
 
-  // The point nearest to another.
+  // Point of the segment nearest to another.
   Vec3Of<T> NearestTo(const Vec3Of<T>& point) const {
     const T place = (point - start).dot(along) / along.squaredNorm();
     if (place <= 0.0) return start;
@@ -20,7 +20,7 @@ struct Segment {
   }
 };
 
-// Positions are from A's origin, in the world's axes: exact far from the
+// Positions are relative to A's origin, in world axes: exact far from the
 // world's origin.
 template <typename T>
 class Evaluation {
@@ -92,7 +92,7 @@ class Evaluation {
     return Vec3Of<T>(found_.distance * normal + across).normalized();
   }
 
-  // What a vector is at right angles to another.
+  // Part of a vector perpendicular to another.
   static Vec3Of<T> Across(const Vec3Of<T>& vector, const Vec3Of<T>& along) {
     return vector - along * T(along.dot(vector) / along.squaredNorm());
   }
@@ -117,8 +117,8 @@ class Evaluation {
     const Vec3Of<T> between = edge_B.start - edge_A.start;
     contact.distance = -contact.nhat_BA_W.dot(between);
     const T place = between.cross(edge_B.along).dot(cross) / square;
-    // Edges whose lines pass each other beyond their ends meet at the nearest
-    // points that they have (OnCrossedEdges).
+    // If the lines cross beyond the ends of the edges, the nearest points of
+    // the edges count (OnCrossedEdges).
     const Vec3Of<T> crossing = edge_A.start + place * edge_A.along;
     contact.p_WCa =
         edge_A.NearestTo(edge_B.NearestTo(crossing)) + A_.body.X_WB.p;

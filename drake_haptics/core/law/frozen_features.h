@@ -13,7 +13,7 @@ struct MovedBodyOf {
   PoseOf<T> X_WB_found;  ///< when they were found
   PoseOf<T> X_WB;        ///< now
 
-  /// How it has turned, in the world.
+  /// Rotation since then, in the world.
   Mat3Of<T> Turn() const { return X_WB.R * X_WB_found.R.transpose(); }
 };
 
@@ -24,8 +24,8 @@ struct MovedPieceOf {
   const MovedBodyOf<T>& body;
 };
 
-/// What two features give at a pose, whether or not they are still nearest to
-/// each other. B's witness point is p_WCa − distance · nhat_BA_W.
+/// Contact of two features at a pose, whether or not they are still the
+/// closest. B's witness point is p_WCa − distance · nhat_BA_W.
 template <typename T>
 struct FeatureContactOf {
   T distance{0};
@@ -33,19 +33,18 @@ struct FeatureContactOf {
   Vec3Of<T> p_WCa;  ///< A's witness point
 };
 
-/// Evaluates the features of a contact where its bodies are now. The distance
-/// is the gap of the features along the normal. A facet takes the normal with
-/// it; of two edges it is their cross product; where a vertex is near a vertex
-/// or an edge, it turns as the closest points part sideways, by that over the
-/// distance at which they were found: so it is the direction between them, to
-/// first order in the motion, and stays one as they pass each other.
+/// Evaluates the features of a contact at the present poses of its bodies. The
+/// distance is the gap of the features along the normal. The normal turns with
+/// a facet; for two edges it is their cross product; for a vertex near a vertex
+/// or an edge it turns by the sideways motion of the closest points over the
+/// distance at which they were found: so it is the direction between them to
+/// first order in the motion, and stays a direction as they pass each other.
 ///
-/// Parallel features have no such normal: faces that are flush keep the normal
-/// of B's, and edges that are parallel (kParallelSine) keep theirs with B, as
-/// do a vertex and an edge or another vertex that were found to touch, with the
-/// edge's body or with B.
-/// @param found as a query gave it when the bodies were where they were found,
-///        not shaded.
+/// Parallel features have no such normal: flush faces keep the normal of B's
+/// face, and parallel edges (kParallelSine) keep a normal that turns with B.
+/// For a vertex and an edge or another vertex that touched when found, it turns
+/// with the edge's body or with B.
+/// @param found contact of a query at the poses X_WB_found, not shaded.
 /// @throws std::out_of_range where the pieces lack a feature of the contact.
 template <typename T>
 [[nodiscard]] FeatureContactOf<T> EvaluateFeatures(const MovedPieceOf<T>& A,

@@ -23,7 +23,7 @@ using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
 
 // Σ k H_ij G_i G_jᵀ. With U = M Σ r φ Gᵀ that is, object by object,
 //   k Uᵀ U + k Σ r (G − Uᵀ φ)(G − Uᵀ φ)ᵀ:
-// no rounding makes the sum less than positive semidefinite.
+// so the sum stays positive semidefinite under rounding.
 Mat6 SumCoupled(const CompressionJacobian& coupling, const Wrenches<double>& G,
                 const Eigen::VectorXd& k) {
   Mat6 K = Mat6::Zero();
@@ -70,7 +70,7 @@ Mat6Of<AutoDiff> SumCoupled(const MovingCompressionJacobian& coupling,
   return K;
 }
 
-// Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common.
+// Σ k H_ij G_i G_jᵀ. Clusters of different objects are not coupled.
 template <typename T>
 Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
                     const std::vector<ContactMaterial>& materials) {
@@ -121,7 +121,7 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
     RequireMaterial(material);
     const Vec6Of<T> G = tool.Lever(cluster.p_WC, cluster.nhat_BA_W);
     const Vec6Of<T> G_object = object.Lever(cluster.p_WC, cluster.nhat_BA_W);
-    // Eq. 8, as power of a unit force: n·v at the contact, of either body.
+    // Eq. 8 as the power of a unit force: n·v of both bodies at the contact.
     const T speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
     const T damping = material.damping * cluster.damping_share;
     const Approach<T> approach(speed);

@@ -8,7 +8,7 @@
 
 namespace drake_haptics {
 
-/// How an object answers contacts (paper, Eq. 6).
+/// Gains of contacts with an object (paper, Eq. 6).
 struct ContactMaterial {
   double stiffness = 0;  ///< k, N/m
   double damping = 0;    ///< k_v, N·s/m
@@ -33,13 +33,13 @@ struct MovingFrameOf {
 };
 using MovingFrame = MovingFrameOf<double>;
 
-/// The wrenches of all clusters. What objects that are not touched feel is not
-/// written down: a scene can have many.
+/// Wrenches of all clusters. Objects without contact have no entry, since a
+/// scene can have many.
 template <typename T>
 struct PenaltyWrenchOf {
   WrenchModelOf<T> tool;               ///< on the tool at To
   std::vector<Vec3Of<T>> f_cluster_W;  ///< force on the tool of each cluster, N
-  /// On its object at the object's origin, of each cluster (Eq. 7, 10).
+  /// Wrench of each cluster on its object, at the object's origin (Eq. 7, 10).
   std::vector<Vec6Of<T>> F_cluster_W;
   std::vector<int> object;  ///< of each cluster
   int num_objects = 0;      ///< touched or not
@@ -49,13 +49,14 @@ struct PenaltyWrenchOf {
 };
 using PenaltyWrench = PenaltyWrenchOf<double>;
 
-/// Sums the penalty wrenches of the clusters (paper, Eq. 6 to 10): at each an
-/// elastic force, k times its compression, along n, and k_v |v| times its
-/// damping share more while the surfaces approach. The force never pulls. At
-/// rest, on the edge of that, the derivative by the velocity is the mean of
-/// both sides. Normals, positions and shares are frozen in the stiffness K = Σ
-/// k H_ij G_i G_jᵀ with G = [r × n; n] and H the set's coupling: the terms that
-/// turn with the normal are left out, which keeps K positive semidefinite.
+/// Sums the penalty wrenches of the clusters (paper, Eq. 6 to 10): each has an
+/// elastic force along n, k times its compression, plus k_v |v| times its
+/// damping share while the surfaces approach. The force never pulls. At rest,
+/// the edge of approach, the derivative by the velocity is the mean of both
+/// sides. Normals, positions and shares are frozen in the stiffness
+/// K = Σ k H_ij G_i G_jᵀ with G = [r × n; n] and H the set's coupling: the
+/// terms from turning normals are left out, which keeps K positive
+/// semidefinite.
 /// @param objects one frame for each object that the clusters name.
 /// @param materials one for each object.
 /// @throws std::invalid_argument for a gain below zero or not finite of an

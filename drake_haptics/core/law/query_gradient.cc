@@ -12,7 +12,7 @@ namespace {
 
 // Step of the differences, as a share of the layer.
 constexpr double kStepShare = 1e-4;
-// Of fourth order: weights of one step and of two.
+// Weights of one step and of two in differences of fourth order.
 constexpr double kNear = 2.0 / 3, kFar = -1.0 / 12;
 
 using Rows5 = Eigen::Matrix<double, 5, 1>;
@@ -51,7 +51,7 @@ void SetGradient(const Vec3Of<AutoDiff>& from, Vec3Of<AutoDiff>* to) {
   }
 }
 
-// The pressure patch of a contact, which depends on where B is in A's frame.
+// Pressure patch of a contact as a function of B's pose in A's frame.
 class MovingPatch {
  public:
   // @param contact in A's frame.
@@ -65,7 +65,7 @@ class MovingPatch {
     const Mat3 turn = RotationExp<double>(by.head<3>()).toRotationMatrix();
     const Pose X_AB{turn * X_AB_.R, X_AB_.p + by.tail<3>()};
     const FeatureContactOf<double> now = FeaturesAt(X_AB);
-    // Facets are flat within a tolerance: what the query measured is kept.
+    // Facets are flat within a tolerance: the query's distance is kept.
     const double h = contact_.distance + (now.distance - distance_);
     const PressurePatch patch = FindPressurePatch(
         {A_, B_, X_AB}, now.nhat_BA_W, h,
@@ -78,7 +78,7 @@ class MovingPatch {
 
   Rows5X6 Slopes() {
     const double step = kStepShare * layer_;
-    // A turn moves the outline of a piece, however near to Bo it is.
+    // A turn moves the outline of a piece, however near to Bo the contact is.
     const double arm = std::max(
         {(contact_.p_WCa - X_AB_.p).norm(), A_.radius + B_.radius, layer_});
     Rows5X6 slopes = Rows5X6::Zero();
@@ -109,7 +109,7 @@ class MovingPatch {
   PatchWorkspace workspace_;
 };
 
-// Gives the contact the derivatives of its patch.
+// Sets the derivatives of the contact's extent and flushness.
 // @return the center of pressure.
 Vec3Of<AutoDiff> DifferentiatePatch(const Polytope& A, const Polytope& B,
                                     const PoseOf<AutoDiff>& X_WA,
@@ -122,7 +122,7 @@ Vec3Of<AutoDiff> DifferentiatePatch(const Polytope& A, const Polytope& B,
   in_A.nhat_BA_W = X_WA_value.R.transpose() * found.nhat_BA_W;
   in_A.p_WCa = X_WA_value.R.transpose() * (found.p_WCa - X_WA_value.p);
   MovingPatch patch(A, B, X_AB, in_A, tolerance);
-  // How B is displaced in A's frame.
+  // Displacement of B in A's frame.
   const Mat3Of<AutoDiff> turn =
       X_WA.R.transpose() * X_WB.R * X_AB.R.transpose().cast<AutoDiff>().eval();
   const Vec3Of<AutoDiff> p_AB = X_WA.R.transpose() * (X_WB.p - X_WA.p);
@@ -169,7 +169,7 @@ ContactOf<AutoDiff> Differentiate(const Contact& found, double tolerance,
 DisplacedShape DisplaceShape(const Decomposition* shape,
                              const AutoDiffVector& q_WB, const char* what) {
   const PoseVectorOf<AutoDiff> q = ToScalars<7>(q_WB, what);
-  PoseFromVector(q_WB.value, what);  // refuses what is not a pose
+  PoseFromVector(q_WB.value, what);  // throws unless it is a pose
   return {shape, {QuaternionOf(q).toRotationMatrix(), q.tail<3>()}};
 }
 

@@ -9,12 +9,12 @@
 namespace drake_haptics {
 namespace {
 
-// Normals within this angle (rad) of the facet's are the facet's.
+// Normals within this angle (rad) of the facet's count as the same.
 constexpr double kFlat = 1e-6;
-// Above this number a tree finds the triangle under a point sooner.
+// Above this number a tree finds the triangle under a point faster.
 constexpr std::size_t kFewTriangles = 4;
-// How far a facet may be from its triangles, as a share of the piece's size:
-// what the merging of coplanar triangles allows for (surface_mesh.h).
+// Largest distance of a facet from its triangles, as a share of the piece's
+// size: the tolerance for merging coplanar triangles (surface_mesh.h).
 constexpr double kReach = 1e-5;
 
 bool IsFlat(const ShadedTriangle& triangle, const Vec3& normal, double size) {
@@ -71,7 +71,7 @@ ShadedCornerOf<T> ShadedFacet::Interpolate(
   const Vec3 reach = Vec3::Constant(reach_);
   tree_.AnyOverlap({place - reach, place + reach},
                    [&](int i) { return is_under(triangles_[i]); });
-  // Few, or off the facet.
+  // Few triangles, or a point off the facet.
   if (nearest.squared_distance > reach_ * reach_) {
     std::any_of(triangles_.begin(), triangles_.end(), is_under);
   }
@@ -82,8 +82,8 @@ ShadedCornerOf<T> ShadedFacet::Interpolate(
     sum.curvature += nearest.weights[k] * corner.curvature.template cast<T>();
   }
   if (nearest.squared_distance > 0.0) {
-    // Off the facet, as where its plane goes on beyond a concave edge, the
-    // surface bends on as it does at the border.
+    // Off the facet, as where its plane continues beyond a concave edge, the
+    // surface keeps the curvature of the border.
     Vec3Of<T> beyond = p;
     for (int k = 0; k < 3; ++k) {
       beyond -= nearest.weights[k] * best->points[k].template cast<T>();

@@ -9,7 +9,7 @@
 
 namespace drake_haptics {
 
-/// A triangle with all that interpolation reads.
+/// A triangle with the data for interpolation.
 struct ShadedTriangle {
   std::array<Vec3, 3> points;  ///< m
   std::array<ShadedCorner, 3> corners;
@@ -19,23 +19,23 @@ struct ShadedTriangle {
 class ShadedFacet {
  public:
   /// @param normal of the facet, unit.
-  /// @param triangles those on it that have an area; none if it was not made
-  ///        from triangles: then its own normal is all there is.
-  /// @param size of the piece, m, by which round-off is judged.
+  /// @param triangles those on the facet that have an area; none if it was not
+  ///        made from triangles: then its own normal counts.
+  /// @param size of the piece, m, the scale of round-off.
   ShadedFacet(const Vec3& normal, std::vector<ShadedTriangle> triangles,
               double size);
 
   const Vec3& normal() const { return normal_; }
 
-  /// Normal, not unit, and curvature at a point of the facet's plane (m):
-  /// beyond the facet as the curvature at its nearest point tells.
+  /// Normal, not unit, and curvature at a point of the facet's plane (m).
+  /// Beyond the facet, the curvature at its nearest point extends the normal.
   template <typename T>
   ShadedCornerOf<T> Interpolate(const Eigen::Matrix<T, 3, 1>& p) const;
 
  private:
   Vec3 normal_;
-  std::vector<ShadedTriangle> triangles_;  // none if all have its own normal
-  AabbTree tree_;                          // over many
+  std::vector<ShadedTriangle> triangles_;  // empty if all have normal_
+  AabbTree tree_;                          // empty if they are few
   double reach_;
 };
 

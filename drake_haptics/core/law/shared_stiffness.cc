@@ -18,32 +18,33 @@ namespace {
 
 // ρ, the share of the compliance that is a contact's own.
 constexpr double kOwnShare = 0.25;
-// Square of what rounding leaves between equal normals: far below what a force
-// can show.
+// Squared difference of equal normals by rounding, far too small to affect a
+// force visibly.
 constexpr double kSameNormal = 1e-26;
-// Equal normals are looked for among those of this many directions before:
-// enough for faces that take turns, and others cost little more (low_rank.h).
+// Equal normals are searched for among this many earlier directions: enough for
+// alternating faces; a missed one costs little more (low_rank.h).
 constexpr std::size_t kRecent = 8;
-// What of c the features may leave out: a billionth, as much of the forces, and
-// far below what a force can show.
+// Part of c that the features may leave out: a billionth. It changes forces by
+// the same share, far too little to notice.
 constexpr double kLeftOut = 1e-9;
 
-// What contacts under an angle have in common: 1 along one direction, nothing
-// from a right angle on. A Wendland function, which is positive definite on the
-// sphere (Gneiting 2013), so that C is, for any number of contacts.
+// Common share c of two contacts: 1 along one direction, 0 from a right angle
+// on. A Wendland function, which is positive definite on the sphere (Gneiting
+// 2013), so that C is, too, for any number of contacts.
 template <typename T>
 T InCommon(const Vec3Of<T>& n, const Vec3Of<T>& other) {
   using std::asin, std::sqrt;
   const T square = (n - other).squaredNorm();
   if (square >= 2.0) return T(0);
-  // Flat there, but the angle has no slope.
+  // The function is flat here, but the angle has no derivative.
   if (square == 0.0) return T(1);
   const T angle = asin(T(sqrt(square) / 2)) * (4 / std::numbers::pi);
   const T rest = 1 - angle;
   return (1 + 4 * angle) * rest * rest * rest * rest;
 }
 
-// The direction of a contact among those of the contacts before it.
+// Index of a contact's direction among those of earlier contacts; appends it if
+// it is new.
 std::int32_t FindDirection(const Vec3& nhat_BA_W, std::vector<Vec3>* normals) {
   const std::size_t count = normals->size();
   for (std::size_t a = count; a > 0 && count - a < kRecent; --a) {
@@ -96,7 +97,7 @@ MovingCompression MakeSkin(std::span<const ContactOf<AutoDiff>* const> contacts,
   return skin;
 }
 
-// Which contacts push.
+// Returns which contacts push.
 std::vector<char> FindPushing(const MovingCompression& skin, bool* is_bounded) {
   const Eigen::Index n = skin.depth.size();
   std::vector<std::int32_t> direction(n);
@@ -113,7 +114,7 @@ std::vector<char> FindPushing(const MovingCompression& skin, bool* is_bounded) {
   return is_pushing;
 }
 
-// A contact alone bears all of its depth.
+// The compression of a single contact is its depth.
 void AppendAlone(CompressionJacobian* coupling) {
   coupling->members.push_back({1.0, -1, 0});
 }
@@ -124,8 +125,8 @@ void AppendAlone(MovingCompressionJacobian* coupling) {
   coupling->together.push_back(AutoDiff(1));
 }
 
-// Solves for the compressions of an object's contacts (m), and appends how they
-// change with the depths.
+// Solves for the compressions of an object's contacts (m), and appends their
+// derivatives by the depths.
 Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
                       double tolerance, ClusterSet* out) {
   Skin skin = MakeSkin(contacts, tolerance);
@@ -164,7 +165,8 @@ T DampingDepth(const T& depth, double tolerance) {
   return std::max<T>(depth, PressureLayer(tolerance));
 }
 
-// Presses with the clusters from `first` on, which are those of one object.
+// Sets the forces of the clusters from `first` on, which are those of one
+// object.
 template <typename T>
 void Press(std::span<const ContactOf<T>* const> contacts, double tolerance,
            std::size_t first, ClusterSetOf<T>* out) {

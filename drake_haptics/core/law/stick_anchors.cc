@@ -6,10 +6,11 @@ namespace drake_haptics {
 namespace {
 
 constexpr int kCapacity = AdhesiveContactsOf<double>::kCapacity;
-// Fourth power of the distance, in units of reach, below which places are one.
+// Fourth power of the distance, in units of reach, below which places are the
+// same.
 constexpr double kSamePlace = 1e-24;
 
-// Load with what it carries; all three add up.
+// Load with its force and grip; all three add up.
 template <typename T>
 struct StickAnchors {
   T load;
@@ -66,7 +67,7 @@ void Distribute(const CarriedContactsOf<T>& last,
   }
 }
 
-// Step 2. Nobody gives more than the surplus or takes more than the lack.
+// Step 2. No contact gives more than its surplus or takes more than its lack.
 template <typename T>
 void Balance(const AdhesiveContactsOf<T>& now, double reach,
              Adhesions<T>* adhesions) {
@@ -152,7 +153,7 @@ void TransportAnchors(const CarriedContactsOf<T>& last, double reach,
     const StickAnchors<T>& has = adhesions[j];
     const T normal_force = contact.load;
     const T whole = std::max(has.load, normal_force);
-    // Only what lies in the new tangent plane holds; in small turns this is
+    // Only the part in the new tangent plane holds; for small turns this is
     // parallel transport.
     const Vec3Of<T> z = has.load_z / whole;
     contact.z_W = z - contact.nhat_BA_W.dot(z) * contact.nhat_BA_W;

@@ -15,12 +15,12 @@
 namespace drake_haptics {
 namespace {
 
-// Beside a crease the normal passes from that of the face to that of the
-// contact within this angle, rad: the tilt at which a face gives way to its
-// edges (contact_patch.h).
+// Beside a crease the normal passes from the face's to the contact's within
+// this angle, rad: the tilt at which a face gives way to its edges
+// (contact_patch.h).
 constexpr double kFlushAngle = 4 * std::numbers::pi / 180;
 
-// Has no slope at zero.
+// Angle of two vectors, rad, without a derivative at zero.
 template <typename T>
 T Angle(const Vec3Of<T>& u, const Vec3Of<T>& v) {
   using std::atan2;
@@ -52,7 +52,7 @@ class NearestFacet {
   double along_ = -std::numeric_limits<double>::infinity();
 };
 
-// Of the facets at a feature, or -1 if none is on the mesh.
+// The same among the facets at a feature; -1 if none is on the mesh.
 int FacetAt(const Polytope& piece, Feature feature, const Vec3& n) {
   NearestFacet nearest(piece, n);
   switch (feature.kind()) {
@@ -81,7 +81,7 @@ SurfaceShading::SurfaceShading(
                                 std::to_string(crease_angle));
   }
   cos_crease_ = std::cos(crease_angle);
-  // Creases turn by more: so the normals of both faces end before they meet.
+  // Creases turn by more, so that the flush angles of both faces do not meet.
   flush_angle_ = std::min(kFlushAngle, crease_angle / 2);
   const VertexNormals normals = ComputeVertexNormals(
       decomposition_->vertices, decomposition_->triangles, crease_angle);
@@ -111,8 +111,8 @@ SheetNormalOf<T> SurfaceShading::Find(
   const auto& is_smooth = feature.kind() == FeatureKind::kVertex
                               ? surface.smooth_vertex
                               : surface.smooth_edge;
-  // The face beside a crease keeps what shading adds to its own normal, less as
-  // the contact's normal leaves it: over a sharp edge the geometry has the say.
+  // A face beside a crease is shaded less the more the contact's normal differs
+  // from its own: over a sharp edge the contact's normal stays.
   T sharpness(0.0);
   if (!is_face && !is_smooth[feature.index()]) {
     const T angle = Angle<T>(facet_normal, n);

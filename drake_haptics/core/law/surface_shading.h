@@ -12,13 +12,13 @@
 
 namespace drake_haptics {
 
-/// What the shaded surface of one body says about the normal of a contact.
+/// Shading of a contact's normal by the surface of one body.
 template <typename T>
 struct SheetNormalOf {
-  /// What to add to the contact's unit normal out of this body to get the
-  /// normal interpolated over the triangle under the witness point. The sum is
-  /// not unit: over the chords of a sphere, interpolated normals are as much
-  /// too short as the chord is inside it.
+  /// Change from the contact's unit normal out of this body to the normal
+  /// interpolated over the triangle under the witness point. The interpolated
+  /// normal is not unit: over the chords of a sphere, it is too short by the
+  /// share by which the chord is inside.
   Vec3Of<T> turn = Vec3Of<T>::Zero();
   Mat3Of<T> curvature = Mat3Of<T>::Zero();  ///< see ShadedCornerOf
   /// 1 at a crease, where the body has no normal of its own, falling to 0 where
@@ -30,15 +30,15 @@ struct SheetNormalOf {
 /// interpolates over its triangles. Immutable.
 class SurfaceShading {
  public:
-  /// @param crease_angle rad; edges that turn by less are smooth. At 0 nothing
-  ///        is, and all normals are those of the facets.
+  /// @param crease_angle rad; edges that turn by less are smooth. At 0 none is,
+  ///        and all normals are those of the facets.
   /// @throws std::invalid_argument unless it is in [0, π].
   SurfaceShading(std::shared_ptr<const Decomposition> decomposition,
                  double crease_angle);
 
   /// @param kind_and_index the feature, as a contact names it.
-  /// @param p witness point on the piece, m; where it is not on a triangle of
-  ///        the feature, the nearest point of one counts.
+  /// @param p witness point on the piece, m; if it is on no triangle of the
+  ///        feature, the nearest point of one counts.
   /// @param n unit normal of the contact, out of this body.
   /// @throws std::out_of_range if there is no such piece or feature.
   template <typename T>
@@ -47,7 +47,7 @@ class SurfaceShading {
                         const Eigen::Matrix<T, 3, 1>& p,
                         const Eigen::Matrix<T, 3, 1>& n) const;
 
-  /// A length of the size of a piece, m, above zero.
+  /// Size of a piece, m, above zero.
   double SizeOf(int piece) const { return surfaces_.at(piece).size; }
 
  private:

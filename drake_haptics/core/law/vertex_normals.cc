@@ -91,9 +91,9 @@ class SmoothFans {
     }
   }
 
-  // Lists the corners that are reached from one of them without a crease;
-  // returns whether they close a circle. Each edge has one other side, so that
-  // a walk that comes back does so to where it began.
+  // Lists the corners that are reached from `start` without a crease; returns
+  // whether they form a closed ring. Each edge has one other side, so a walk
+  // that closes does so at its start.
   bool WalkFan(const Corner& start, std::vector<Corner>* fan) const {
     fan->assign(1, start);
     for (const bool forward : {true, false}) {
@@ -102,7 +102,7 @@ class SmoothFans {
         const int edge = forward ? corner.k : Before(corner.k);
         const int side = beyond_[corner.triangle][edge];
         if (side < 0) break;
-        // The other triangle runs along this edge the other way.
+        // The other triangle has this edge in the opposite direction.
         corner = {side / 3, forward ? After(side % 3) : side % 3};
         if (corner.code() == start.code()) return true;
         fan->push_back(corner);
@@ -124,13 +124,13 @@ class SmoothFans {
       const double angle = std::atan2(p.cross(q).norm(), p.dot(q));
       sum += angle * normals_[corner.triangle];
     }
-    // Normals that cancel have no mean; those of a fan folded flat do.
+    // Normals that cancel, as in a fan that is folded flat, have no mean.
     const double length = sum.norm();
     return length > 1e-9 ? Vec3(sum / length) : normals_[fan.front().triangle];
   }
 
   // The gradient of the interpolated normal is constant in a triangle. Weighted
-  // with the area it needs no division, which slivers would spoil.
+  // with the area it needs no division, which fails for slivers.
   Mat3 MeanCurvature(const std::vector<Corner>& fan,
                      const VertexNormals& normals) const {
     Mat3 sum = Mat3::Zero();

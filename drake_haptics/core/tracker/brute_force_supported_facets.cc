@@ -22,8 +22,8 @@ class Enumeration {
   }
 
  private:
-  // An edge with the normals beside it, in A's frame. Those of a segment are
-  // missing, and its arc is a whole circle.
+  // An edge with the normals of its two facets, in A's frame. A segment has no
+  // facets, and its arc is a full circle.
   struct Arc {
     Arc(const Polytope& P, const Polytope::Edge& edge, const Mat3& R)
         : along(R * (P.vertices[edge.v1] - P.vertices[edge.v0])),
@@ -34,8 +34,7 @@ class Enumeration {
       right = R * P.facets[edge.right].normal;
     }
 
-    // Whether it may meet the great circle of directions perpendicular to
-    // `axis`.
+    // Whether the arc may cross the great circle perpendicular to `axis`.
     bool MayCross(const Vec3& axis) const {
       if (is_circle) return true;
       const double l = axis.dot(left), r = axis.dot(right);
@@ -103,7 +102,7 @@ class Enumeration {
     }
   }
 
-  // Whether no neighbor of vertex v lies further against n, in P's frame.
+  // Whether no neighbor of vertex v lies farther along −n, in P's frame.
   static bool IsInRegion(const Polytope& P, int v, const Vec3& n) {
     return IsFarthest(P, v, -n, kRegionSlack * P.radius);
   }

@@ -8,19 +8,19 @@
 
 namespace drake_haptics {
 
-/// The shallowest of all facets of A ⊖ B (global_depth.h), virtual or not, with
-/// its support by the surfaces. kNoFacet where A ⊖ B has no interior.
+/// Shallowest facet of A ⊖ B (global_depth.h), virtual ones included, with its
+/// support by the surfaces. kNoFacet if A ⊖ B has no interior.
 /// @param start a vertex pair to walk from.
 Depth LeastOfAllFacets(const PosedPair& pair, const MinkowskiVertex& start,
                        GlobalDepthState* state);
 
 /// Lists all facets of A ⊖ B that both surfaces carry and whose gap exceeds
-/// `floor` (m), the shallowest first: by enumeration, not by a walk, so that
-/// none is missed wherever virtual facets lie between.
+/// `floor` (m), shallowest first. Enumerates instead of walking, so that no
+/// facet is hidden behind virtual ones.
 ///
 /// Each original facet of a body faces the vertices of the other that support
 /// it; two original edges make a facet where their arcs on the Gauss map cross.
-/// It costs two products for most pairs of edges.
+/// Most pairs of edges cost two dot products.
 void ListSupportedFacetsByBruteForce(const PosedPair& pair, double floor,
                                      std::vector<DepthCandidate>* facets);
 

@@ -5,8 +5,8 @@
 namespace drake_haptics {
 namespace {
 
-// Two pairs of nodes are merged if the gap of their parents keeps them quiet
-// for at least this share of the time that their own gaps would.
+// Two pairs of nodes are merged if their parent pair stays out of reach for at
+// least this share of the motion that they do.
 constexpr double kMergeShare = 0.5;
 
 double Size(const Box& box) { return box.half.sum(); }
@@ -45,8 +45,8 @@ double BvttFront::Visit(int i, const Tick& tick,
   return nodes_[i].mark;
 }
 
-// A pair of the front whose mark is reached: it is still apart, or it is two
-// leaves within reach, or the front goes below it.
+// Visits a pair on the front whose mark is reached: it is still apart, or two
+// leaves within reach, or is split. Returns its new mark.
 double BvttFront::VisitFront(int i, const Tick& tick,
                              std::vector<EnteredPair>* entered) {
   const int a = nodes_[i].a, b = nodes_[i].b;
@@ -84,7 +84,8 @@ void BvttFront::Split(int i, const Tick& tick) {
   }
 }
 
-// Takes the front above two pairs that are both apart, if it can rest there.
+// Replaces two pairs that are both apart by their parent pair, if that stays
+// apart for long enough.
 void BvttFront::Merge(int i, const Tick& tick) {
   const Node node = nodes_[i];
   const double slack = node.mark - tick.odometer - tick.reach;

@@ -18,20 +18,20 @@ struct PiecePair {
 /// A pair of pieces whose boxes have come within reach of each other.
 struct EnteredPair {
   PiecePair pieces;
-  int node = 0;    ///< by which the front knows it
-  double gap = 0;  ///< of the boxes, m
+  int node = 0;    ///< its node in the front
+  double gap = 0;  ///< between the boxes, m
 };
 
-/// The front of a descent through two trees at once, kept between ticks
-/// (generalized front tracking; Ehmann and Lin 2001): all pairs of nodes above
-/// it are within reach of each other, the pairs on it are apart, or leaves
-/// within reach.
+/// Front of a simultaneous descent through two trees, kept between ticks
+/// (generalized front tracking; Ehmann and Lin 2001): the pairs of nodes above
+/// the front are within reach of each other, those on it are apart or are
+/// leaves within reach.
 ///
-/// Distances are told against an odometer, which counts the motion of A in B. A
-/// pair of nodes apart by a gap g when the odometer stood at s is apart for as
-/// long as the odometer is below s + g: nothing is asked of it until then, nor
-/// of any branch of the front whose smallest such mark is not reached. So a
-/// tick costs by the motion since the last one, not by the size of the bodies.
+/// Distances refer to an odometer, which adds up the motion of A in B. A pair
+/// of nodes that is apart by a gap g at odometer value s stays apart while the
+/// odometer is below its mark s + g, and is not visited until then; nor is a
+/// branch of the front before its smallest mark. So the cost of a tick depends
+/// on the motion since the last one, not on the size of the bodies.
 class BvttFront {
  public:
   struct Tick {
@@ -39,17 +39,17 @@ class BvttFront {
     const PieceBvh& B;
     const ObbGap& boxes;  ///< at the present pose
     double odometer;      ///< m
-    double reach;         ///< pairs with gaps up to this are wanted, m
+    double reach;         ///< largest gap of a pair within reach, m
   };
 
   /// Moves the front to the tick's pose and appends the pairs of leaves that
-  /// have come within reach. These are the caller's, until it returns them.
+  /// have come within reach. The caller keeps them until it returns them.
   void Advance(const Tick& tick, std::vector<EnteredPair>* entered);
 
   /// Puts back a pair of leaves that has gone out of reach.
   void Return(int node, double gap, double odometer);
 
-  /// Up to where the odometer may go before a pair comes within no reach, m.
+  /// Odometer up to which no pair on the front can touch, m.
   double mark() const { return nodes_.empty() ? kNever : nodes_[0].mark; }
 
   void Clear() {
@@ -60,12 +60,12 @@ class BvttFront {
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  // A pair of nodes, one of each tree. The two below it are neighbors.
+  // A pair of nodes, one of each tree. Its two children are adjacent.
   struct Node {
     int a, b;
     int parent;
     int children = -1;
-    double mark = -kNever;  // smallest of the front below it
+    double mark = -kNever;  // smallest on the front below
   };
 
   double Visit(int i, const Tick& tick, std::vector<EnteredPair>* entered);
@@ -74,7 +74,7 @@ class BvttFront {
   void Merge(int i, const Tick& tick);
 
   std::vector<Node> nodes_;  // the first is the root
-  std::vector<int> free_;    // first of two neighbors not in use
+  std::vector<int> free_;    // first of two adjacent unused nodes
 };
 
 }  // namespace drake_haptics

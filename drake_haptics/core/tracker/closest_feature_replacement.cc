@@ -11,10 +11,10 @@
 namespace drake_haptics {
 namespace {
 
-// Cosine of the largest turn from the direction of the closest points to the
-// facet that takes their place.
+// Cosine of the largest angle between the direction of the closest points and
+// the normal of the facet that replaces them.
 constexpr double kLargestPromotion = 0.5;
-// Of positions, as a share of the size.
+// Round-off of positions, as a share of the size.
 constexpr double kRoundOff = 1e-12;
 
 class Search {
@@ -70,8 +70,8 @@ class Search {
     Consider(n, h, a, b, vertex_pair);
   }
 
-  // The closest point is a vertex: an edge may have ended there at the next
-  // wall, into which A presses.
+  // Where the closest point is a vertex, an edge may end at the next wall, into
+  // which A presses.
   void ConsiderEndingEdges() {
     found_.ends_early = true;
     if (request_.translation_vectors.empty()) return;
@@ -125,7 +125,7 @@ class Search {
     if (support != NormalConeSupport::kSupported) return;
     const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
     // A flush face wider than the pieces has its lowest corner over another
-    // one.
+    // piece.
     if (LateralOffset(pair_, a, b, witness) > 0 &&
         !(surface_goes_on_flat_ &&
           FindSurfacePatch(pair_, n, h, vertex_pair, witness.p_a,

@@ -15,8 +15,8 @@ namespace {
 
 using Workspace = ConcaveNeighborsWorkspace;
 
-// How far a point may be behind a plane, or beyond a side, as a share of the
-// size: what the noise of a mesh moves its vertices.
+// Tolerance for points behind a plane or beyond a side, as a share of the size:
+// the noise of mesh vertices.
 constexpr double kNoise = 1e-6;
 // Bound on the facets that one convex piece reaches from one contact.
 constexpr std::size_t kMaxReached = 64;
@@ -25,11 +25,11 @@ Feature ToFeature(const std::array<std::int32_t, 2>& kind_and_index) {
   return {static_cast<FeatureKind>(kind_and_index[0]), kind_and_index[1]};
 }
 
-// The facets of one body, P, whose planes go on against the convex pieces of
-// the other, Q.
+// Walks over the facets of one body, P, whose continued planes touch the convex
+// pieces of the other, Q.
 class Walk {
  public:
-  // @param X_PQ the frame of the convex pieces in that of the facets.
+  // @param X_PQ frame of the convex pieces in the frame of the facets.
   Walk(const ConnectedPieces& facets_of, const ConnectedPieces& convex,
        const Pose& X_PQ, bool is_P_tool, const Pose& X_WA, const Pose& X_AB,
        double tolerance, std::ptrdiff_t first, std::ptrdiff_t last,
@@ -88,7 +88,7 @@ class Walk {
     return contact.support[is_P_tool_ ? 1 : 0];
   }
 
-  // All planes that count against one convex piece.
+  // Finds all planes that touch one convex piece.
   void RunPiece(int q, std::span<const int> sources) {
     q_ = q;
     center_ = X_PQ_ * convex().centroid;
@@ -121,8 +121,7 @@ class Walk {
     }
   }
 
-  // @param piece, facet of the contact from which the walk began, and x its
-  // point.
+  // @param piece, facet of the contact where the walk began, and its point x.
   void Consider(const Workspace::Reached& from, const FacetNeighbor& neighbor,
                 int piece, int facet, const Vec3& x) {
     const Workspace::Plane plane = PlaneOf(neighbor.piece, neighbor.facet);
@@ -155,8 +154,8 @@ class Walk {
     Append(vertex, neighbor.piece, neighbor.facet);
   }
 
-  // Whether a point is over a facet that was reached through one of its sides,
-  // or beyond that side more than beyond any other, and beyond no convex one.
+  // Whether a point is over a facet, or farther beyond the side through which
+  // the facet was reached than beyond any other, and beyond no convex side.
   bool IsOver(const FacetNeighbor& reached, const Vec3& y) const {
     const Polytope& piece = P_.decomposition.pieces[reached.piece];
     const auto loop = piece.loop_of(reached.facet);
@@ -219,7 +218,7 @@ class Walk {
     AddOrReplace(in_world);
   }
 
-  // Of facets of one piece, which are convex to each other, one counts.
+  // Facets of one piece are convex to each other: only the farthest counts.
   void AddOrReplace(const Contact& contact) {
     const auto same = std::find_if(
         contacts_.begin() + last_, contacts_.end(), [&](const Contact& other) {
@@ -232,7 +231,7 @@ class Walk {
     }
   }
 
-  // Whether the query of the pair of pieces gave one.
+  // Whether the query of the pair of pieces gave a contact.
   bool HasContact(int piece) const {
     const std::pair pieces =
         is_P_tool_ ? std::pair(piece, q_) : std::pair(q_, piece);
@@ -265,7 +264,7 @@ class Walk {
         workspace_.last_group;
   }
 
-  // The point of a facet that is nearest to a point.
+  // Point of a facet that is nearest to the given one, m.
   Vec3 NearestOnFacet(int piece, int facet, const Vec3& point) const {
     const Polytope& P = P_.decomposition.pieces[piece];
     const auto loop = P.loop_of(facet);
@@ -296,11 +295,11 @@ class Walk {
   const Pose& X_WA_;
   const Pose& X_AB_;
   const double tolerance_;
-  const std::ptrdiff_t first_, last_;  // contacts that the queries gave
+  const std::ptrdiff_t first_, last_;  // range of contacts from the queries
   Workspace& workspace_;
   std::vector<Contact>& contacts_;
-  int q_ = -1;   // the convex piece at hand
-  Vec3 center_;  // of the ball around it, m
+  int q_ = -1;   // the current convex piece
+  Vec3 center_;  // of its bounding ball, in P's frame, m
 };
 
 }  // namespace

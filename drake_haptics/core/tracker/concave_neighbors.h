@@ -18,49 +18,50 @@ namespace drake_haptics {
 ///
 /// Beside a convex edge the closest features tell which of its facets counts,
 /// and the query of each pair of pieces finds them. Beside a concave edge all
-/// facets count, each from where the gap to its plane falls below the
-/// tolerance: the plane goes on beyond the facet's border there. So a tool that
-/// slides through a hollow of facets meets each of them at zero compression and
-/// leaves it so, whatever facet it is over.
+/// facets count, each as soon as the gap to its plane is below the tolerance:
+/// the plane continues beyond the facet's border there. So a tool that slides
+/// through a concave surface meets and leaves each facet at zero compression,
+/// whichever facet it is over.
 ///
-/// A contact of a vertex with a facet therefore has others beside it: of the
-/// same convex piece with each facet that its facet goes on in across concave
-/// and flush edges, breadth first, as long as the gap to the plane is below the
-/// tolerance. A facet takes part where
-/// - it and the facet of the contact face each other: each has a point nearest
-///   to the other body's vertex in front of the plane of the other;
-/// - the vertex that is deepest below its plane lies over it, or beyond the
-///   edge through which it was reached farther than beyond any other, and not
+/// A contact of a vertex with a facet therefore adds contacts of the same
+/// convex piece with the facets that continue its facet across concave and
+/// flush edges, breadth first, while the gap to the plane is below the
+/// tolerance. A facet takes part if
+/// - it and the contact's facet face each other: on each, the point nearest to
+///   the other body's vertex lies in front of the other's plane;
+/// - the vertex deepest below its plane lies over it, or farther beyond the
+///   edge through which the facet was reached than beyond any other, and not
 ///   beyond a convex edge.
-/// Where the query of a pair of pieces gives a contact that is the only one of
-/// the pair: the facets of a convex piece are a union.
+/// A pair of pieces whose query gives a contact gets no other: the facets of a
+/// convex piece are a union.
 
 /// Buffers, kept so that a warm tick allocates nothing.
 struct ConcaveNeighborsWorkspace {
   struct Reached {
     int piece, facet;
-    int vertex;  // of the convex piece, in reach of the facet's plane
+    int vertex;  // of the convex piece, deepest below the facet's plane
   };
   struct Plane {
     Vec3 n;
     double offset;  // m
   };
-  std::vector<int> sources;  // contacts, by their convex pieces
+  std::vector<int> sources;  // contacts, sorted by convex piece
   std::vector<Reached> queue;
-  std::vector<Plane> planes;             // of a convex piece's contacts
-  std::vector<std::int64_t> reached_by;  // by the place of a facet
+  std::vector<Plane> planes;             // of the convex piece's contacts
+  std::vector<std::int64_t> reached_by;  // group that last reached each facet
   std::int64_t last_group = 0;
   PatchWorkspace patch;
 };
 
-/// Pieces and where their facets go on.
+/// Pieces and the neighbors that continue their facets.
 struct ConnectedPieces {
   const Decomposition& decomposition;
   const FacetNeighbors& neighbors;
 };
 
-/// Appends the contacts of the planes that go on beside those from `first` on,
-/// which are of one object, found at this pose and ordered by pieces.
+/// Appends contacts with the neighbors of the facets in contact. Considers the
+/// contacts from `first` on, which are of one object, found at this pose and
+/// ordered by pieces.
 /// @param X_AB the object in the tool's frame.
 /// @param tolerance surfaces farther apart (m) have no contact.
 void AppendConcaveNeighbors(const ConnectedPieces& tool,

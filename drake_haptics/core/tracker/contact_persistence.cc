@@ -5,13 +5,12 @@
 namespace drake_haptics {
 namespace {
 
-// How much a contact may sink beyond what the motion explains, as a share of
-// the tolerance.
+// Growth of the depth allowed beyond the motion, as a share of the tolerance.
 constexpr double kSinkShare = 0.1;
 // Cosine of the largest turn of a contact's normal in one tick.
 constexpr double kLargestTurn = 0.5;
-// Cosine of the angle, 10°, within which normals are asked for together, and of
-// that beyond the largest turn.
+// Cosine of the angle, 10°, within which normals share a cone, and of the half
+// angle of that cone, 10° above the largest turn.
 constexpr double kAlike = 0.985;
 constexpr double kLargestTurnOfAlike = 0.34;
 
@@ -49,7 +48,7 @@ void ContactPersistence::AppendWanted(std::vector<WantedFacets>* wanted) const {
   }
 }
 
-// Down to where the motion since a contact explains a facet's gap, m.
+// Smallest gap of a facet that the motion since a contact explains, m.
 double ContactPersistence::LeastGap(const PenetratingContact& last) const {
   return last.distance - 2 * last.motion - kSinkShare * request_.tolerance;
 }

@@ -10,22 +10,22 @@
 
 namespace drake_haptics {
 
-/// Whether a contact goes on from the last tick to this one: on the same pair
-/// of pieces, or from one pair to another where the tool slides over a seam
-/// while it presses. It may sink only as far as the motion there explains.
+/// Decides whether a contact of the last tick continues: on the same pair of
+/// pieces, or on another pair where the tool slides over a seam while it
+/// presses. Its depth may grow only as far as the motion there explains.
 class ContactPersistence {
  public:
   ContactPersistence(const PosedPair& pair, const SurfaceRequest& request,
                      const SurfacePairState& state)
       : pair_(pair), request_(request), state_(state) {}
 
-  /// Whether this pair's own last contact goes on in the facet of A ⊖ B.
+  /// Whether this pair's last contact continues in the facet of A ⊖ B.
   bool Continues(const DepthCandidate& facet) const;
 
-  /// Whether a contact of the last tick on other pieces goes on in it.
+  /// Whether a contact of the last tick on other pieces continues in it.
   bool IsTransferred(const DepthCandidate& facet) const;
 
-  /// Appends what holds all facets that IsTransferred.
+  /// Appends bounds that hold every facet that IsTransferred accepts.
   void AppendWanted(std::vector<WantedFacets>* wanted) const;
 
  private:

@@ -73,7 +73,7 @@ void ContactTracker::SetTolerance(double tolerance) {
   RequireNotNegative(tolerance, "tolerance");
   const double farther = tolerance - tolerance_;
   tolerance_ = tolerance;
-  // What was sure to stay beyond the larger one stays beyond a smaller one.
+  // Pairs beyond the larger tolerance are beyond a smaller one, too.
   if (farther <= 0) return;
   for (int i = 0; i < num_objects(); ++i) {
     objects_[i].tracked.WatchFarther(farther);
@@ -106,7 +106,7 @@ void ContactTracker::Query(const Pose& X_WT, double tolerance,
   try {
     QueryAll(X_WT, tolerance, out);
   } catch (...) {
-    // There was no memory: what is half learnt must not be trusted.
+    // Out of memory: half-updated state must not be trusted.
     out->contacts.clear();
     Reset();
     throw;
@@ -134,9 +134,9 @@ void ContactTracker::QueryAll(const Pose& X_WT, double tolerance,
   last_X_WT_ = X_WT;
 }
 
-// Starts the tool's odometer from zero: after one far pose it would be too
-// large to count a step of a hand. What has been learnt of objects that rest is
-// forgotten; one that moves too is judged by how the tool moves against it.
+// Restarts the tool's odometer at zero: after one far pose it would be too
+// large to resolve a step of a hand. Forgets objects that rest; objects that
+// moved, too, are judged by the relative motion (QueryObject).
 void ContactTracker::StartOver() {
   for (int i = 0; i < num_objects(); ++i) {
     if (objects_[i].has_moved) {

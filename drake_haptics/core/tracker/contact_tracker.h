@@ -17,7 +17,7 @@ struct TreedScene {
   std::vector<TreedShape> objects;
 };
 
-/// Builds the trees and finds the facets that go on; those that share a
+/// Builds the trees and finds the facets' neighbors. Bodies with the same
 /// decomposition share both.
 /// @throws std::invalid_argument if a decomposition is missing.
 TreedScene BuildTrees(
@@ -25,21 +25,21 @@ TreedScene BuildTrees(
     std::vector<std::shared_ptr<const Decomposition>> objects);
 
 /// Finds all contacts between a moving tool and many objects, tick after tick,
-/// each starting from the last tick's answer (paper, sections 3 and 5.3.2).
-/// An object costs nothing while the motion since it was last looked at cannot
-/// have brought it within reach. Copies are independent and keep what was
-/// learnt.
+/// each starting from the last tick's answer (paper, sections 3 and 5.3.2). An
+/// object costs nothing while the motion since its last query cannot have
+/// brought it within reach. Copies are independent and keep the memory of
+/// earlier ticks.
 ///
-/// What a tool presses into keeps it on the side on which it came in. That is
-/// known as long as the tool is followed: a tool that has moved by more than
-/// the diameter of the ball around it, so that it meets nothing of where it was
-/// at the last query, was put elsewhere, and starts there as at first.
+/// A surface keeps the tool on the side from which it was entered. That side is
+/// known while the tool is tracked. A tool that has moved by more than the
+/// diameter of its bounding ball, so that the ball is clear of its last place,
+/// was put elsewhere and starts there as at first.
 class ContactTracker {
  public:
   /// Objects that share a decomposition share its tree.
   /// @param tolerance contacts up to this distance (m) are reported.
-  /// @throws std::invalid_argument if it is negative or not finite, if no step
-  ///         of a walk is allowed, or if a decomposition is missing.
+  /// @throws std::invalid_argument if it is negative or not finite, if
+  ///         max_walk_steps is below 1, or if a decomposition is missing.
   ContactTracker(std::shared_ptr<const Decomposition> tool,
                  std::vector<std::shared_ptr<const Decomposition>> objects,
                  double tolerance, const DepthSearch& depth = {});
@@ -49,14 +49,14 @@ class ContactTracker {
   int num_objects() const { return static_cast<int>(objects_.size()); }
   double tolerance() const { return tolerance_; }
 
-  /// From now on reports contacts up to `tolerance` (m). What was learnt is
-  /// kept: what is in contact goes on from its last answer.
+  /// Reports contacts up to `tolerance` (m) from now on. Earlier ticks are not
+  /// forgotten: contacts continue from their last answers.
   /// @throws std::invalid_argument if it is negative or not finite.
   void SetTolerance(double tolerance);
 
   const DepthSearch& depth() const { return depth_; }
 
-  /// Poses object i; the pose that it has costs nothing.
+  /// Sets the pose of object i. Setting its present pose again costs nothing.
   /// @throws std::out_of_range, std::invalid_argument.
   void SetObjectPose(int i, const Pose& X_WO);
 
@@ -68,12 +68,12 @@ class ContactTracker {
     Query(X_WT, tolerance_, out);
   }
 
-  /// The same, of contacts up to a smaller distance `tolerance` (m), for less
-  /// work. What is learnt of pairs serves later queries of any.
+  /// The same for contacts up to a smaller distance `tolerance` (m), for less
+  /// work. The updated memory of pairs serves later queries at any tolerance.
   /// @throws std::invalid_argument also unless 0 <= tolerance <= tolerance().
   void Query(const Pose& X_WT, double tolerance, ContactSet* out);
 
-  /// Forgets everything learnt from earlier ticks.
+  /// Forgets all earlier ticks.
   void Reset();
 
  private:
@@ -82,13 +82,14 @@ class ContactTracker {
     Pose X_WO;
     Pose last_X_WO;  // at the last query
     bool has_moved = false;
-    // What its own odometer is ahead of the tool's, by its own motion, m.
+    // Its odometer less the tool's, due to its own motion, m.
     double ahead = 0;
   };
 
   void QueryAll(const Pose& X_WT, double tolerance, ContactSet* out);
-  // Beyond the ball around it, or turned by more than a contact that goes on
-  // may turn, 60°: of a side on which it came in then nothing is left.
+  // Whether the tool has moved by more than the diameter of its bounding ball
+  // or turned by more than 60°, the largest turn of a contact that continues.
+  // The side from which it came is unknown then.
   bool IsPutElsewhere(const Motion& motion, double step) const {
     return step > 2 * radius_ || motion.turn() > 1;
   }

@@ -7,7 +7,7 @@
 namespace drake_haptics {
 namespace {
 
-// Of pieces with more facets and edges than these a walk costs less.
+// For pieces with more facets and edges than this a walk costs less.
 constexpr std::size_t kMaxFeatures = 1024;
 
 bool IsWorthListing(const PosedPair& pair) {

@@ -7,11 +7,11 @@
 
 namespace drake_haptics {
 
-/// Whether a walk may find a facet of A ⊖ B that takes a contact over
-/// (ContactPersistence::IsTransferred) or, where `own` is given, one that is
-/// wanted like that, and on whose own features the bodies press. False is a
-/// proof that it cannot, and costs less than a walk that finds nothing.
-/// @param near vertices near which the bodies overlap, for speed alone.
+/// Whether a walk may find a facet of A ⊖ B on whose own features the bodies
+/// press and that takes a contact over (ContactPersistence::IsTransferred) or,
+/// where `own` is given, that `own` holds. False proves that it cannot, at less
+/// cost than a walk that finds nothing.
+/// @param near vertices near which the bodies overlap, for speed only.
 bool MayOverlapDeeper(const PosedPair& pair, const SurfaceRequest& request,
                       const ContactPersistence& persistence,
                       const MinkowskiVertex& near, const WantedFacets* own,

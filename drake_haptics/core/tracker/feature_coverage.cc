@@ -8,8 +8,8 @@
 namespace drake_haptics {
 namespace {
 
-// How far beyond its features' sides a contact in depth may lie, as a share of
-// the size.
+// Largest offset of a penetrating contact beyond its features' sides, as a
+// share of the size.
 constexpr double kSlideShare = 1e-2;
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace drake_haptics {
 MinkowskiVertex VertexPairOf(const PosedPair& pair,
                              const DepthCandidate& facet);
 
-/// The patch of a contact between pieces of surfaces, by a layer as thick as
+/// Patch of a contact between pieces of surfaces, for a layer as thick as
 /// `tolerance` − h (m), at most PressureLayer(tolerance).
 PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
                                const MinkowskiVertex& vertex_pair,
@@ -28,7 +28,7 @@ void SpreadOver(const PressurePatch& patch, const MinkowskiVertex& vertex_pair,
 /// share of the size.
 bool IsWithinSides(const PosedPair& pair, const PairContact& contact);
 
-/// Whether the bodies press on the facet's own features: beside them its plane
+/// Whether the bodies press on the facet's own features; beyond them its plane
 /// means nothing.
 bool IsWithinFeatures(const PosedPair& pair, const DepthCandidate& facet,
                       double tolerance, PatchWorkspace* workspace);

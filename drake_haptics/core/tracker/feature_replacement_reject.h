@@ -6,15 +6,15 @@
 
 namespace drake_haptics {
 
-/// Whether the contact between a facet of one of two bodies and the vertex of
-/// the other that faces it may be carried by both surfaces, with a gap above
-/// `floor` (m): false is a proof that it is not, for less than finding it.
+/// Whether both surfaces may carry a contact, with a gap above `floor` (m),
+/// between a facet of one body and the vertex of the other that faces it. False
+/// proves that they do not, at less cost than finding the contact.
 ///
-/// Virtual facets carry nothing, and the other body nothing along directions
-/// outside its normal cone. The farthest vertex of the other body below the
-/// facet's plane bounds the gap.
-/// @param n the facet's normal as that of the contact, in A's frame.
-/// @param facet its index; `is_of_A` tells of which body.
+/// Virtual facets carry no contact, and the other body carries none along
+/// directions outside its normal cone. The farthest vertex of the other body
+/// below the facet's plane bounds the gap.
+/// @param n the contact's normal at the facet, in A's frame.
+/// @param facet its index; `is_of_A` says in which body.
 /// @param near where the search for the farthest vertex starts.
 bool MayReplaceFeature(const PosedPair& pair, const Vec3& n, int facet,
                        bool is_of_A, const MinkowskiVertex& near, double floor);

@@ -11,9 +11,9 @@ namespace {
 
 using Node = PieceBvh::Node;
 
-// How many neighbors on the space-filling curve compete to be merged.
+// Neighbors to either side on the space-filling curve that may be merged.
 constexpr int kSearchRadius = 16;
-// One node in so many is merged in a round, at least.
+// At least one node in this many is merged in a round.
 constexpr int kLeastMergedShare = 8;
 
 Node Leaf(const Polytope& piece, int index) {
@@ -85,9 +85,9 @@ std::vector<int> CurveOrder(const std::vector<Node>& leaves) {
   return order;
 }
 
-// For each active node the one nearby on the curve that it fits best with. The
-// best pair of all chose each other: of ties each takes the one whose place
-// differs from its own by the lowest bits, which no two of them share.
+// Returns for each active node its best partner nearby on the curve. The best
+// pair of all chose each other: among ties a node takes the partner with the
+// smallest XOR of their places, which differs for all partners.
 std::vector<int> BestPartners(const std::vector<Node>& nodes,
                               const std::vector<int>& active) {
   const int count = static_cast<int>(active.size());
@@ -109,9 +109,9 @@ std::vector<int> BestPartners(const std::vector<Node>& nodes,
   return partner;
 }
 
-// One round of merging: pairs that chose each other become one node. Where
-// these are few, as in a row with ever wider gaps, neighbors on the curve are
-// merged instead: so the depth is bounded by the logarithm of the number.
+// One round of merging: pairs that chose each other become one node. If these
+// are few, as in a row with ever wider gaps, neighbors on the curve are merged
+// instead, so that the depth is logarithmic in the number of leaves.
 std::vector<int> MergeRound(const std::vector<int>& active,
                             std::vector<Node>* nodes) {
   const int count = static_cast<int>(active.size());

@@ -29,7 +29,7 @@ class PieceBvh {
   bool empty() const { return nodes_.empty(); }
   int root() const { return static_cast<int>(nodes_.size()) - 1; }
   const Node& node(int i) const { return nodes_[i]; }
-  /// The box of the whole; of no extent where there are no pieces.
+  /// Box around all pieces, without extent if there are none.
   Box bounds() const { return empty() ? Box() : nodes_.back().box; }
   const Box& box_of(int piece) const { return nodes_[leaf_of_[piece]].box; }
 

@@ -11,8 +11,8 @@
 namespace drake_haptics {
 namespace {
 
-// How far a direction may miss the supports, as a share of the radius: what a
-// walk takes for a corner of a Gauss region, and round-off.
+// Slack of a support test, as a share of the radius: covers what a walk takes
+// for a corner of a Gauss region, and round-off.
 constexpr double kSlack = 10 * kRegionSlack;
 
 class Listing {
@@ -58,8 +58,7 @@ class Listing {
                a * b - std::sqrt((1 - a * a) * (1 - b * b)) - kRoundOff;
   }
 
-  // Whether there is a direction along which both surfaces can carry a contact
-  // and one is wanted.
+  // Whether both surfaces may carry a contact along a wanted direction.
   bool IsAnyInReach() const {
     if (!DoMeet(of_A_, of_B_)) return false;
     return std::any_of(wanted_.begin(), wanted_.end(), [&](const auto& some) {
@@ -67,7 +66,7 @@ class Listing {
     });
   }
 
-  // @param gap a bound from above, m.
+  // @param gap upper bound of the gap, m.
   bool IsWanted(const Vec3& n, double gap, double slack = 0) const {
     return gap >= least_ && of_A_.Holds(n, slack) && of_B_.Holds(n, slack) &&
            std::any_of(wanted_.begin(), wanted_.end(), [&](const auto& some) {
@@ -75,10 +74,9 @@ class Listing {
            });
   }
 
-  // Whether a direction on the arc may be wanted: none on an arc of a quarter
-  // turn is farther than an eighth from its ends or its middle. The gap is at
-  // most that of two points, for two pairs of them; a negative one is largest
-  // at an end of the arc.
+  // Whether a direction on the arc may be wanted: on an arc of up to 90° each
+  // is within 22.5° of an end or the middle. Two pairs of points bound the gap
+  // from above; a negative gap is largest at an end of the arc.
   bool MayBeWanted(const Vec3& from, const Vec3& to, const Vec3& between,
                    const Vec3& or_between) const {
     constexpr double kBetween = 0.39;  // 2 sin(π/16)
@@ -123,7 +121,7 @@ class Listing {
     }
   }
 
-  // Calls visit(v) for the farthest vertex and those beside it that are as far.
+  // Calls visit(v) for the farthest vertex and its neighbors that are as far.
   template <typename Visitor>
   static void VisitSupports(const Polytope& P, const Vec3& outward, int* hint,
                             const Visitor& visit) {
@@ -135,14 +133,14 @@ class Listing {
     }
   }
 
-  // The mesh may carry contacts along directions in which the piece, beside an
-  // edge of its hull, reaches farther.
+  // The mesh may carry contacts along directions in which the piece reaches
+  // farther, beside an edge of its hull.
   static bool IsSupport(const Polytope& P, int v, const Vec3& outward) {
     return IsFarthest(P, v, outward, kSlack * P.radius);
   }
 
-  // Parallel edges have an arc in common where others cross at one direction:
-  // no facet, and no point at which they pass each other.
+  // Whether two edges are not parallel. The arcs of parallel edges overlap
+  // instead of crossing: there is no facet, and no crossing point.
   bool AreCrossed(int edge_A, int edge_B) const {
     const Polytope::Edge& a = pair_.A.edges[edge_A];
     const Polytope::Edge& b = pair_.B.edges[edge_B];
@@ -211,8 +209,8 @@ class Listing {
     CrossPart(P, from, to, hint, cross);
   }
 
-  // Along from + x · side, for x from 0 to 1. No vertex supports two parts of
-  // it, so that there are fewer crossings than vertices.
+  // The same along from + x · side, for x from 0 to 1. No vertex supports two
+  // separate parts of it, so there are fewer crossings than vertices.
   template <typename Cross>
   static void CrossPart(const Polytope& P, const Vec3& from, const Vec3& to,
                         int* hint, const Cross& cross) {
@@ -252,12 +250,13 @@ class Listing {
 
   const PosedPair& pair_;
   const Mat3 R_BA_;
-  const DirectionCone of_A_, of_B_;  // along which the surfaces can carry
+  // Directions along which the surfaces can carry contacts.
+  const DirectionCone of_A_, of_B_;
   const MinkowskiVertex near_;
   // Points of B in A's frame and of A in B's, which bound gaps from above.
   const Vec3 center_B_, near_B_, center_A_, near_A_;
   const std::span<const WantedFacets> wanted_;
-  double least_ = std::numeric_limits<double>::infinity();  // of the wanted, m
+  double least_ = std::numeric_limits<double>::infinity();  // least wanted, m
   std::vector<DepthCandidate>& facets_;
 };
 

@@ -10,7 +10,7 @@
 namespace drake_haptics {
 
 /// Facets of A ⊖ B with normals in a cone (in A's frame, from B into A) and
-/// with gaps of at least that.
+/// with gaps of at least `least`.
 struct WantedFacets {
   DirectionCone cone;
   double least = 0;  ///< m, below 0
@@ -20,14 +20,14 @@ struct WantedFacets {
   }
 };
 
-/// Lists the facets of A ⊖ B that the surfaces of both pieces carry and that
-/// are wanted, wherever they are: by going through the features of the two
-/// meshes, where a walk goes through those of the hulls. Pieces of a surface
-/// have few, and mostly there is no such facet: then no walk can find one.
+/// Lists all wanted facets of A ⊖ B that the surfaces of both pieces carry.
+/// Goes through the features of the two meshes, where a walk goes through those
+/// of the hulls. Pieces of a surface have few features, and mostly no such
+/// facet: then no walk can find one.
 ///
-/// All of them for bodies in general position. Where edges are parallel to
-/// facets, of the facets along one normal one at least.
-/// @param near vertices near which the bodies overlap, for speed alone.
+/// Complete for bodies in general position. Where edges are parallel to facets,
+/// lists at least one of the facets with the same normal.
+/// @param near vertices near which the bodies overlap, for speed only.
 /// @pre Both pieces have facets: dimensions of 2 or 3.
 void ListSupportedFacets(const PosedPair& pair, const MinkowskiVertex& near,
                          std::span<const WantedFacets> wanted,

@@ -12,11 +12,11 @@
 namespace drake_haptics {
 namespace {
 
-// How far behind a facet A may have been, as a share of the size: as far as
-// pieces that touch may be apart or not.
+// How far behind a facet A may have been, as a share of the size: within this,
+// touching pieces may be found apart or not.
 constexpr double kTouchShare = 1e-9;
 
-// Down to where a facet may be in front of which A lay, m.
+// Smallest gap of a facet in front of which A may have been, m.
 double LeastGap(const PosedPair& pair, const Pose& last_X_AB) {
   const Motion of_B(last_X_AB, pair.X_AB);
   const Motion of_A(last_X_AB.inverse(), pair.X_AB.inverse());
@@ -25,7 +25,8 @@ double LeastGap(const PosedPair& pair, const Pose& last_X_AB) {
          kTouchShare * pair.scale();
 }
 
-// The shallowest of the supported facets down to a gap that count.
+// Returns the shallowest supported facet with a gap of at least `least` that
+// counts.
 template <typename DoesCount>
 std::optional<DepthCandidate> Shallowest(const PosedPair& pair, double least,
                                          const MinkowskiVertex& near,
@@ -116,8 +117,8 @@ std::optional<DepthCandidate> FindWayOut(const PosedPair& pair,
   if (pair.A.dimension < 2 || pair.B.dimension < 2) return std::nullopt;
   const Separation separation = ComputeSeparation(pair, {}, 0);
   if (separation.status != SeparationStatus::kTouching) return std::nullopt;
-  // A direction along which they only touch separates them: no way leads out of
-  // what does not overlap, least of all one through the far side.
+  // A facet without depth separates the pieces: without an overlap there is no
+  // way out, least of all one through the far side.
   const auto way = Shallowest(
       pair, kNoFloor, separation.simplex.vertex_pairs[0], workspace,
       [&](const auto& facet) {

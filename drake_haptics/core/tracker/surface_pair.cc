@@ -23,11 +23,12 @@
 namespace drake_haptics {
 namespace {
 
-// VertexPairs looked at for a facet that both surfaces carry, on the first tick
+// Vertex pairs searched for a facet that both surfaces carry, on the first tick
 // of an overlap and on later ones.
 constexpr int kColdPromotionVertexPairs = 64;
 constexpr int kWarmPromotionVertexPairs = 6;
-// The same for an overlap that was refused, and for how many ticks.
+// The same for an overlap that was refused, the ticks until its next thorough
+// search, and their spread among pairs.
 constexpr int kRefusedPromotionVertexPairs = 2;
 constexpr int kRestAfterRefusal = 64;
 constexpr int kRefusalSpread = 32;
@@ -120,8 +121,8 @@ class Query {
     return promoted ? promoted : Behind();
   }
 
-  // What becomes of the contact at the closest points where the surfaces do not
-  // carry it.
+  // Replaces the contact at the closest points where the surfaces do not carry
+  // it.
   std::optional<PairContact> Promoted(const PairContact& closest) {
     const Promotion promotion =
         PromoteClosestPoints(pair_, separation_, request_,
@@ -135,7 +136,8 @@ class Query {
     return ContactAtFacet(pair_, promotion.facet, ContactStatus::kNear);
   }
 
-  // No contact of its own: the tool is out of reach, or behind the surface.
+  // For a pair without a contact of its own: the tool is out of reach, or
+  // behind the surface.
   std::optional<PairContact> Behind() {
     return state_.in_contact ? Held(state_.n) : TransferredFrom();
   }
@@ -162,7 +164,7 @@ class Query {
                   : state_.in_contact ? WarmDepth()
                   : is_new            ? EntryDepth()
                                       : RefusedDepth();
-    // Round-off can hide every facet from where a walk began.
+    // Round-off can hide every facet from the start of a walk.
     if (depth.status == DepthStatus::kNoFacet) {
       depth = ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n,
                         state_.vertex_pair, Bounds(kWarmPromotionVertexPairs),
@@ -206,10 +208,11 @@ class Query {
     return AtFacet(depth, status);
   }
 
-  // The least depth of all facets that both surfaces carry, where the bodies
-  // press on them. The least of all facets needs no other reason. Where that
-  // one is virtual, the least of the others counts if it is shallower than the
-  // depth that was tracked, or, with none to compare to, by the rules for that.
+  // Least depth over the facets that both surfaces carry and on which the
+  // bodies press. The shallowest of all facets needs no other reason. If it is
+  // not one of these, the shallowest of these counts if it is shallower than
+  // the tracked depth or, where that is not plausible, if it is plausible
+  // itself.
   std::optional<Depth> LeastDepth(const Depth& tracked) {
     const Depth least = LeastOfAllFacets(pair_, tracked.vertex_pair, global_);
     if (least.status == DepthStatus::kNoFacet) return std::nullopt;
@@ -234,16 +237,16 @@ class Query {
     return state_.refusals > 0 && state_.refusals < kRestAfterRefusal;
   }
 
-  // Of a pair that overlaps: false is a proof that a search for a plausible
-  // facet would be in vain.
+  // For a pair that overlaps: false proves that a search for a plausible facet
+  // would be in vain.
   bool MayBegin() {
     if (global_ != nullptr || separation_.status == SeparationStatus::kApart) {
       return true;
     }
     WantedFacets wanted{
         {state_.n, state_.n.squaredNorm() > 0 ? kComingFrom : -1.0}, kNoFloor};
-    // A search sees a facet around its start that is no deeper than the start;
-    // none but the two faces where both pieces are flat.
+    // A search finds a facet around its start that is no deeper than the start,
+    // unless both pieces are flat: then it finds only the two faces.
     if (pair_.A.dimension == 3 || pair_.B.dimension == 3) {
       wanted.least =
           std::min(GapAlong(state_.n), GapAlong(BetweenCentroids(pair_))) -
@@ -262,7 +265,7 @@ class Query {
                             own, &workspace_);
   }
 
-  // Where the overlap of a pair that was apart began.
+  // Finds the facet where the overlap of a pair that was apart began.
   std::optional<Depth> Entry() {
     const bool is_walked = global_ != nullptr && !request_.is_any_way_out;
     if (is_walked || pair_.A.dimension < 2 || pair_.B.dimension < 2) {
@@ -275,9 +278,9 @@ class Query {
                  VertexPairOf(pair_, *facet)};
   }
 
-  // Of a pair that was not in contact.
+  // Depth of a pair that was not in contact.
   Depth EntryDepth() {
-    // Pairs refused at one tick shall not all be searched at one later tick.
+    // Spreads the next searches of pairs that are refused at the same tick.
     state_.refusals = (state_.vertex_pair.a * 31 + state_.vertex_pair.b * 17) %
                       kRefusalSpread;
     return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n,
@@ -289,8 +292,8 @@ class Query {
     return {max_promotion_vertex_pairs, request_.max_walk_steps};
   }
 
-  // Of one that was refused at the last tick, and mostly is again: the thorough
-  // search is made again only now and then.
+  // Depth of a pair that was refused at the last tick, and mostly is again: the
+  // thorough search is repeated only now and then.
   Depth RefusedDepth() {
     MinkowskiVertex vertex_pair = state_.refused_vertex_pair;
     SupportGap(pair_, state_.refused_n, &vertex_pair);
@@ -298,7 +301,7 @@ class Query {
                      Bounds(kRefusedPromotionVertexPairs), &workspace_.depth);
   }
 
-  // @param n, vertex pair where the search ended.
+  // @param n, vertex_pair where the search ended.
   void Refuse(const Vec3& n, const MinkowskiVertex& vertex_pair) {
     is_refused_ = true;
     ++state_.refusals;
@@ -306,24 +309,24 @@ class Query {
     state_.refused_vertex_pair = vertex_pair;
   }
 
-  // The contact at a facet of A ⊖ B, which is also the next tick's start.
+  // Contact at a facet of A ⊖ B, from which the next tick starts.
   PairContact AtFacet(const Depth& depth, ContactStatus status) {
     facet_vertex_pair_ = depth.vertex_pair;
     return ContactAtFacet(pair_, depth.best, status);
   }
 
-  // Whether the facet found can be the way on which the overlap came about: it
-  // goes on from the last contact, A lay in front of it at the last pose, or it
-  // is near the shallowest way there is. A piece of a thin wall is also met
-  // from behind, through its virtual side: its own surface is far then, and the
+  // Whether the overlap may have begun through the facet found: it continues
+  // the last contact, A lay in front of it at the last pose, or its depth is
+  // near the shallowest there is. A piece of a thin wall is also met from
+  // behind, through its virtual side: its own surface is far then, and the
   // pieces on the near side carry the contact.
   bool IsPlausible(const Depth& depth) {
     if (depth.best.support == NormalConeSupport::kVirtual) return false;
-    // What goes on may reach beyond its features: a face wider than the pieces
-    // has its deepest corner over another one.
+    // A contact that continues may reach beyond its features: a face wider than
+    // the pieces has its deepest corner over another piece.
     if (persistence_.Continues(depth.best)) return true;
     if (depth.best.support != NormalConeSupport::kSupported) return false;
-    // A walk that was cut short may not have come to where the bodies press.
+    // A walk that was cut short may end before the features that press.
     if (depth.status != DepthStatus::kBounded &&
         !IsWithinFeatures(depth.best)) {
       return false;
@@ -336,14 +339,16 @@ class Query {
             !IsDeeperThanWay(depth.best));
   }
 
-  // Of an overlap that has begun: whether the bodies have not moved so far.
+  // For an overlap that has just begun: whether it is deeper than the bodies
+  // have moved.
   bool IsDeeperThanWay(const DepthCandidate& facet) const {
     return HasBegun() && !request_.is_first &&
            facet.h < -LongestWay(pair_, request_.last_X_AB);
   }
 
-  // The contact in the shallowest facet seen in which it goes on: the walk may
-  // have left that facet for one to the side, by which the tool did not come.
+  // Contact at the shallowest visited facet that continues the last contact:
+  // the walk may have left it for one to the side, through which the tool did
+  // not come.
   std::optional<PairContact> GoneOn() {
     const DepthCandidate* best = nullptr;
     for (const DepthCandidate& facet : workspace_.depth.candidates) {
@@ -359,8 +364,8 @@ class Query {
                    ContactStatus::kPenetrating);
   }
 
-  // A pair that goes on where another one pressed: the tool may be behind this
-  // piece altogether.
+  // Takes over the contact of another pair that pressed here: the tool may be
+  // entirely behind this piece.
   std::optional<PairContact> TransferredFrom() {
     // Contacts along one normal lead to the same facet: one of them will do.
     const Vec3* tried = nullptr;
@@ -382,8 +387,8 @@ class Query {
                                            &workspace_.patch);
   }
 
-  // From the last answer. On coherent motion its facet mostly still is the
-  // answer, and one comparison proves it.
+  // Depth from the last answer. In coherent motion its facet mostly is the
+  // answer again, and one comparison proves it.
   Depth WarmDepth() {
     MinkowskiVertex vertex_pair = state_.vertex_pair;
     if (!state_.feature_A.is_none()) {
@@ -406,9 +411,10 @@ class Query {
                      Bounds(kWarmPromotionVertexPairs), &workspace_.depth);
   }
 
-  // The tool was in contact and the hulls are apart now, yet the gap along the
-  // way in, n, is negative: it went through a shallow piece. The depth is
-  // measured along the surface's own normals, and the way out is the way in.
+  // Contact of a tool that was in contact and went through a shallow piece: the
+  // hulls are apart now, yet the gap along the way in, n, is negative. The
+  // depth is measured along the surface's own normals, and the way out is the
+  // way in.
   std::optional<PairContact> Held(const Vec3& n) {
     MinkowskiVertex vertex_pair = state_.vertex_pair;
     if (!(SupportGap(pair_, n, &vertex_pair) < 0)) return std::nullopt;
@@ -462,8 +468,8 @@ class Query {
   bool did_overlap_ = false;  // at the last query
   bool is_refused_ = false;   // an overlap had no plausible facet
   bool ends_early_ = false;   // see Promotion
-  std::optional<MinkowskiVertex>
-      facet_vertex_pair_;  // of the facet that is the answer, if one is
+  // Of the answer, if it is at a facet.
+  std::optional<MinkowskiVertex> facet_vertex_pair_;
 };
 
 }  // namespace

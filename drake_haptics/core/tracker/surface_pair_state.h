@@ -10,22 +10,23 @@
 
 namespace drake_haptics {
 
-/// What a pair of surface pieces remembers from one tick to the next, beyond
-/// what every pair does.
+/// Memory of a pair of surface pieces from one tick to the next, beyond that of
+/// every pair.
 struct SurfacePairState : PairState {
   bool in_contact = false;
-  double distance = 0;      ///< last contact's, m
-  Vec3 p_b = Vec3::Zero();  ///< its witness point of B, in B's frame, m
-  /// The last contact was a depth, within its features' sides.
+  double distance = 0;      ///< of the last contact, m
+  Vec3 p_b = Vec3::Zero();  ///< its witness point on B, in B's frame, m
+  /// The last contact was penetrating, within its features' sides.
   bool is_settled = false;
-  bool overlaps = false;  ///< the pieces do, where they were asked last
-  bool is_unmet = false;  ///< they began to, and there is no contact
-  int refusals = 0;       ///< ticks on end at which an overlap was no contact
-  Vec3 refused_n = Vec3::Zero();  ///< where the last search ended, in A's frame
+  bool overlaps = false;  ///< the pieces overlapped at the last query
+  bool is_unmet = false;  ///< the overlap began there without a contact
+  int refusals = 0;       ///< consecutive ticks of overlap without a contact
+  /// Normal where the last search ended, in A's frame.
+  Vec3 refused_n = Vec3::Zero();
   MinkowskiVertex refused_vertex_pair;
-  int press = -1;  ///< its place among the tick's pressed contacts, if any
-  /// Set where no contact was found on the features that face each other, for
-  /// they end: of how many walls that A presses into was known then.
+  int press = -1;  ///< index among the tick's pressed contacts, or −1
+  /// Where no contact was found because features that face each other end:
+  /// number of walls that A presses into that were known then. Else −1.
   int num_ways_out = -1;
 };
 

@@ -15,18 +15,19 @@ struct PenetratingContact {
   Vec3 n = Vec3::UnitX();   ///< unit, from B into A
   Vec3 p_b = Vec3::Zero();  ///< witness point of B, m
   Vec3 p_a = Vec3::Zero();  ///< the same point now, in A's frame, m
-  double motion = 0;        ///< how far A has moved past it since, m
-  /// It goes on at this tick within the features of its own pieces, so that no
-  /// others need to take it over.
+  double motion = 0;        ///< how far A has moved there since, m
+  /// It continues at this tick within the features of its own pieces, so that
+  /// no others need to take it over.
   bool is_kept = false;
 
-  /// Notes how the pose has changed since the contact was found.
+  /// Updates p_a and motion for the pose at this tick.
   void Advance(const Pose& X_AB, const Pose& last_X_AB) {
     p_a = X_AB * p_b;
     motion = (p_a - last_X_AB * p_b).norm();
   }
 
-  /// Whether two pieces are where the contact was, by their boxes.
+  /// Whether the boxes of two pieces, widened by depth and motion, hold the
+  /// point of the contact.
   bool IsNear(const Polytope& A, const Polytope& B) const {
     const auto is_within = [slack = motion - distance](const Polytope& P,
                                                        const Vec3& point) {
@@ -37,25 +38,25 @@ struct PenetratingContact {
   }
 };
 
-/// What is asked of a pair of pieces.
+/// Input of a query of two surface pieces.
 struct SurfaceRequest {
   double tolerance = 0;  ///< surfaces farther apart (m) have no contact
-  /// The surfaces cross and no other contact was found: any way out will do.
+  /// The surfaces cross and no other contact was found: any way out counts.
   bool is_any_way_out = false;
-  /// The pose at the last query, by which the motion of a contact is known, and
-  /// the side from which the bodies came together.
+  /// Pose at the last query. It tells the motion of a contact and the side from
+  /// which the bodies came together.
   Pose last_X_AB;
-  /// Where the tool presses already. A pair that was not in contact may take
-  /// over there.
+  /// Contacts of the last tick that press. A pair that was not in contact may
+  /// take them over.
   std::span<const PenetratingContact> pressed{};
-  /// Translations of A (m, in its frame), each out of one of the walls that it
-  /// presses into at this tick, as far as these are known by now.
+  /// Translations of A (m, in its frame), each out of one wall that it presses
+  /// into at this tick, for the walls known so far.
   std::span<const Vec3> translation_vectors{};
   /// Bound on the steps of a walk. The search for a first facet that both
-  /// surfaces carry has bounds of its own, so that no contact is lost for want
-  /// of it.
+  /// surfaces carry has its own bounds, so that this one loses no contact.
   int max_walk_steps = WalkBounds{}.max_steps;
-  /// No earlier pose is known; last_X_AB is where the bodies may come from.
+  /// No earlier pose is known; last_X_AB is where the bodies may have come
+  /// from.
   bool is_first = false;
 };
 

@@ -11,21 +11,21 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-// Bound on the ways out of walls that are gone, one after the other, to find a
-// pose from which the tool may have come.
+// Bound on the moves out of walls, one after the other, to find a pose from
+// which the tool may have come.
 constexpr int kMaxWaysOut = 16;
-// How far beyond the touch each leads, as a share of the size.
+// How far beyond touching each move leads, as a share of the size.
 constexpr double kBeyondTouch = 1e-6;
 
-// Whether a piece is a solid by itself: what overlaps its hull is in it.
+// Whether a piece is a solid by itself: what overlaps its hull overlaps it.
 bool IsWhole(const Polytope& P) {
   return std::all_of(P.facets.begin(), P.facets.end(),
                      [](const auto& facet) { return facet.original; });
 }
 
-// Where a pair may have come from, of which no earlier pose is known: it counts
-// by the pose before that all pairs share, and then leaves by its own shortest
-// way.
+// Pose from which a pair without a known earlier pose may have come: the pose
+// that all pairs share or, for a pair that has an entry from there, the pose at
+// the end of its own shortest way out.
 Pose PoseBeforeOf(const PosedPair& pair, double tolerance, const Pose& shared,
                   SurfacePairWorkspace* workspace) {
   const auto way = FindWayOut(pair, tolerance, workspace);
@@ -43,15 +43,14 @@ Pose PoseBeforeOf(const PosedPair& pair, double tolerance, const Pose& shared,
 
 void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
                           std::vector<Contact>* out) {
-  // Who begins has missed nothing, whatever the odometer stood at before.
+  // The first tick has missed no motion, whatever the odometer was before.
   if (is_first_) odometer_ = tick.odometer - tick.step;
   double deepest = 0;
   for (PenetratingContact& last : pressed_) {
     last.Advance(tick.X_AB, tick.last_X_AB);
     deepest = std::max(deepest, -last.distance);
   }
-  // Where the tool presses, pieces beside may take over from as far as it is
-  // deep.
+  // Where the tool presses, pieces as far away as it is deep may take over.
   const double reach = tick.watched + deepest;
   const ObbGap boxes(tick.X_AB);
   const BvttFront::Tick front_tick{*tick.tool.tree, *shape_.tree, boxes,
@@ -89,12 +88,12 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
                          out);
   if (out->size() > num_found) sort();
   is_first_ = false;
-  // Copied, so that each object keeps the memory that it has needed.
+  // Copied, not swapped, so that each object keeps the capacity it needs.
   pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
 }
 
-// Where the tool may have come from, of which nothing is known: out of all that
-// it overlaps with, each time by the shortest way there is.
+// Pose from which a tool without a known past may have come: moves it out of
+// all that it overlaps, each time by the shortest way out.
 Pose TrackedObject::FindPoseBefore(const Tick& tick,
                                    TrackerWorkspace* workspace) const {
   Pose X_AB = tick.X_AB;
@@ -123,10 +122,10 @@ bool TrackedObject::HasBegunUnmet() const {
   });
 }
 
-// Of the pairs whose surfaces cross, or whose solids do, the contact of the one
+// Of the pairs whose surfaces cross or whose solids overlap, queries the one
 // with the shallowest way out, wherever on its features: a tool that stands
-// through a wall has no way out on the features where it is. None is longer
-// than the way in, where that is known.
+// through a wall has no way out on the features where it is. The way out is not
+// longer than the way in, where that is known.
 void TrackedObject::AskForAnyWayOut(const Tick& tick,
                                     TrackerWorkspace* workspace,
                                     std::vector<Contact>* out) {
@@ -180,14 +179,14 @@ void TrackedObject::AskAll(const Tick& tick, const BvttFront::Tick& front_tick,
                                  : -kForever;
 }
 
-// Takes the motion off each pair's slack and asks the pairs that were in
-// contact: where the tool goes on pressing on the same pieces, no others are
-// needed. A pair in contact stays under watch, since the tool may have passed
+// Subtracts the motion from each pair's slack and queries the pairs that were
+// in contact: where the tool keeps pressing on the same pieces, no others are
+// needed. A pair in contact stays watched, since the tool may have passed
 // behind a shallow piece, out of the reach of its box.
 void TrackedObject::AskPairsInContact(const Tick& tick,
                                       TrackerWorkspace* workspace,
                                       std::vector<Contact>* out) {
-  // What the tool moved while there was nothing to be found here.
+  // Motion of the tool while this object needed no query, m.
   const double missed = tick.odometer - tick.step - odometer_;
   odometer_ = tick.odometer;
   int piece = -1;
@@ -205,8 +204,8 @@ void TrackedObject::AskPairsInContact(const Tick& tick,
   }
 }
 
-// Asks again the pairs that may be in contact by what the tool presses into
-// elsewhere, which is not known before all pairs are asked.
+// Repeats the query of pairs whose contact may depend on the walls that the
+// tool presses into elsewhere: these are known only after all queries.
 void TrackedObject::RequeryBesideWalls(const Tick& tick,
                                        TrackerWorkspace* workspace,
                                        std::vector<Contact>* out) {
@@ -219,7 +218,7 @@ void TrackedObject::RequeryBesideWalls(const Tick& tick,
   }
 }
 
-// Whether the tool pressed here on other pieces, and does no more.
+// Whether the tool pressed here on other pieces that did not keep it.
 bool TrackedObject::MayTakeOver(const Tick& tick,
                                 const PiecePair& pieces) const {
   return std::any_of(
@@ -230,7 +229,7 @@ bool TrackedObject::MayTakeOver(const Tick& tick,
       });
 }
 
-// Merges the pairs into those under watch, from behind and in place.
+// Merges the pairs into the watched ones, in place and from the end.
 void TrackedObject::InsertPairs(double watched,
                                 std::vector<EnteredPair>* entered) {
   const auto by_pieces = [](const auto& p, const auto& q) {
@@ -264,8 +263,8 @@ int TrackedObject::NewState() {
   return state;
 }
 
-// Asks the pair unless it is sure to have no contact. Returns whether it stays
-// under watch.
+// Queries the pair unless it surely has no contact. Returns whether it stays
+// watched.
 bool TrackedObject::UpdatePair(const Tick& tick,
                                const BvttFront::Tick& front_tick,
                                TrackerWorkspace* workspace, ActivePair* pair,

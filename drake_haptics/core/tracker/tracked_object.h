@@ -16,18 +16,18 @@
 
 namespace drake_haptics {
 
-/// A decomposition with the tree over its pieces and the facets that go on from
-/// piece to piece; shared by all that use it.
+/// A decomposition with the tree over its pieces and the neighbors of its
+/// facets in other pieces, shared by all its users.
 struct TreedShape {
   std::shared_ptr<const Decomposition> decomposition;
   std::shared_ptr<const PieceBvh> tree;
   std::shared_ptr<const FacetNeighbors> neighbors;
 };
 
-/// Which depth a pair of pieces in overlap has, and what it may cost.
+/// Kind of depth of two overlapping pieces, and bound on its cost.
 struct DepthSearch {
-  /// The least one of all (surface_pair.h), not the one walked to from the
-  /// last tick.
+  /// The least depth of all (surface_pair.h), not the one tracked from the last
+  /// tick.
   bool is_global = false;
   int max_walk_steps = WalkBounds{}.max_steps;  ///< at least 1
 };
@@ -37,39 +37,39 @@ struct TrackerWorkspace {
   SurfacePairWorkspace pair;
   std::vector<EnteredPair> entered;
   std::vector<PenetratingContact> pressed;
-  std::vector<Vec3>
-      translation_vectors;  ///< of the pressed ones, see SurfaceRequest
+  /// Of the pressed contacts, see SurfaceRequest.
+  std::vector<Vec3> translation_vectors;
   ConcaveNeighborsWorkspace concave;
 };
 
-/// One object that the tool may touch: which pairs of pieces are within reach,
-/// and what is known of each. Copies are independent and keep what was learnt.
+/// One object that the tool may touch: the pairs of pieces within reach, and
+/// the memory of each. Copies are independent and keep that memory.
 class TrackedObject {
  public:
   struct Tick {
     const TreedShape& tool;
-    double watched;    ///< pairs up to this distance (m) are under watch
+    double watched;    ///< pairs up to this distance (m) are watched
     double tolerance;  ///< contacts up to this one (m) are reported
     const DepthSearch& depth;
     const Pose& X_WA;       ///< the tool in the world
     const Pose& X_AB;       ///< the object in the tool's frame
     const Pose& last_X_AB;  ///< at the last tick
     const Motion& motion;   ///< of the tool since then, seen from the object
-    double step;            ///< bound of it for all points of the tool, m
-    double odometer;        ///< all such steps added up, this one included, m
+    double step;            ///< bound of that motion for all its points, m
+    double odometer;        ///< sum of all steps, this one included, m
   };
 
   explicit TrackedObject(TreedShape shape) : shape_(std::move(shape)) {}
 
-  /// Appends the contacts to `out`, ordered by pieces, the object's index left
-  /// at zero.
+  /// Appends the contacts to `out`, ordered by pieces, with the object's index
+  /// zero.
   void Query(const Tick& tick, TrackerWorkspace* workspace,
              std::vector<Contact>* out);
 
-  /// The odometer up to which there is nothing to be found.
+  /// Odometer up to which no query can find a contact, m.
   double quiet_until() const { return quiet_until_; }
 
-  /// To be called where the watched distance grows, by so much (m).
+  /// Must be called when the watched distance grows, with the growth in m.
   void WatchFarther(double growth);
 
   /// Forgets everything.
@@ -80,10 +80,10 @@ class TrackedObject {
   struct ActivePair {
     PiecePair pieces;
     int node;  // in the front
-    // The motion of the tool's piece for which the pair is sure to stay apart
-    // by more than the watched distance, m.
+    // Motion of the tool's piece during which the pair stays apart by more than
+    // the watched distance for sure, m.
     double slack;
-    int state;  // its place in states_
+    int state;  // index in states_
     bool was_in_contact = false;
   };
 
@@ -112,13 +112,13 @@ class TrackedObject {
   BvttFront front_;
   std::vector<ActivePair> watched_;  // sorted by pieces
   std::vector<SurfacePairState> states_;
-  std::vector<GlobalDepthState> global_states_;  // of states_, where needed
+  std::vector<GlobalDepthState> global_states_;  // for states_
   std::vector<int> free_states_;
   std::vector<PenetratingContact> pressed_;  // last tick's
   double odometer_ = 0;                      // at the last tick, m
   double quiet_until_ = 0;
-  bool is_first_ = true;  // nothing is known of an earlier tick
-  // Of the pressed ones, by the pairs that were in contact.
+  bool is_first_ = true;  // no earlier tick is known
+  // Whether a contact of pressed_ is not kept by its own pieces.
   bool is_any_left_ = false;
 };
 

@@ -26,7 +26,7 @@ from drake_haptics.scene.schema import Scene
 # A budget is kept if later runs keep it within this factor.
 PROMISE = 1.1
 RUNS = 5
-# Something else may disturb one in so many runs.
+# Something else may disturb one in this many runs.
 _SPARED = 5
 _EACH_OBJECT = "environment."
 
@@ -36,9 +36,9 @@ class Trial:
     """Fresh runs of a combination in turns with the scene as it is.
 
     Attributes:
-        combination: What was run.
+        combination: Combination that was run.
         p99_us: 99th percentile of the tick in each of its runs, µs.
-        scene_p99_us: The same of the scene's.
+        scene_p99_us: 99th percentile of the tick in each of the scene's runs, µs.
     """
 
     combination: Combination
@@ -56,7 +56,7 @@ class Trial:
         return statistics.median(self.scene_p99_us or (math.nan,))
 
     def holds(self, budget_us: float) -> bool:
-        """Tells whether it keeps a budget, and will in later runs but for 10 %.
+        """Tells whether it keeps a budget, and will keep it within 10 % in later runs.
 
         The median of the runs must keep it, and four fifths of them must within 10 %.
         """
@@ -69,13 +69,13 @@ class BudgetChoice:
     """The outcome of a budget.
 
     Attributes:
-        budget_us: For the whole tick at its 99th percentile, µs.
-        scene: With the choice's settings; with those of the fastest if none holds it.
-        trial: The runs of the choice, or of the fastest.
+        budget_us: Budget for the whole tick at its 99th percentile, µs.
+        scene: Scene with the choice's settings, or the fastest ones if none holds it.
+        trial: Runs of the choice, or of the fastest combination.
         holds: Whether the budget is kept.
-        trials: All that were run, the scene as it is first.
-        errors: Of all that is given up together; None where it is less than two
-            settings, or where nothing holds.
+        trials: All trials, that of the scene as it is first.
+        errors: Errors of all settings of the choice together; None if they are fewer
+            than two, or if nothing holds.
     """
 
     budget_us: float
@@ -102,19 +102,21 @@ def choose_setting(
 ) -> BudgetChoice:
     """Picks the most accurate combination of settings that holds a time budget.
 
-    The scene as it is comes first. If it does not hold the budget, the study says which
-    combination ought to; that is run again and again, in turns with the scene, until
-    runs of it hold the budget while those of the next more accurate one do not.
+    The scene as it is comes first. If it does not hold the budget, the study predicts
+    which combination does. Combinations are then run, in turns with the scene, until
+    one holds the budget while the next more accurate one does not.
 
     Args:
-        scene: What is to be made faster.
-        budget_us: For the whole tick, 99th percentile, µs.
-        make_study: Measures settings, all of them for None; called only if the scene
-            does not hold, and in the end with what is given up together.
-        measure_p99: Runs a scene in a new process and returns the 99th percentile of
-            its ticks, µs.
-        progress: Called with what is done now and the share of it, in [0, 1].
-        runs: Of each combination.
+        scene: Scene to make faster.
+        budget_us: Budget for the whole tick at its 99th percentile, µs.
+        make_study: Function that measures settings, all of them for None; called only
+            if the scene does not hold, and at the end with several chosen settings as
+            one.
+        measure_p99: Function that runs a scene in a new process and returns the 99th
+            percentile of its ticks, µs.
+        progress: Callback that takes the current work and the share of it that is done,
+            in [0, 1].
+        runs: Number of runs of each combination.
 
     Raises:
         ValueError: The budget or the number of runs is not positive.
@@ -136,7 +138,7 @@ def choose_setting(
     done = {0: as_it_is}
 
     def hold(index: int) -> bool:
-        """Tells whether a combination holds, by runs of it."""
+        """Tells whether a combination holds the budget, by runs of it."""
         if index not in done:
             what = f"combination {index} of {len(chain) - 1}"
             done[index] = _try_out(
@@ -155,7 +157,8 @@ def choose_setting(
     )
     while index < last and not hold(index):
         index += 1
-    # What ought not to hold may do so; the scene itself too, after further runs of it.
+    # A more accurate one may hold against the prediction, after further runs even the
+    # scene itself.
     while hold(index) and index > 0 and hold(index - 1):
         index -= 1
     if done[0].holds(budget_us):
@@ -175,7 +178,7 @@ def choose_setting(
 
 
 def _add_scene_runs(as_it_is: Trial, other: Trial) -> Trial:
-    """Returns the trial of the scene with the runs that it had beside another."""
+    """Returns the scene's trial, with the scene's runs beside another trial added."""
     p99_us = (*as_it_is.p99_us, *other.scene_p99_us)
     return Trial(as_it_is.combination, p99_us, p99_us)
 
@@ -187,7 +190,7 @@ def _try_out(
     runs: int,
     begin_run: Callable[[int], None],
 ) -> Trial:
-    """Runs a combination and the scene in turns; what cannot be run holds nothing."""
+    """Runs a combination and the scene in turns; one that fails holds no budget."""
     changed = combination.setting.apply(scene)
     own: list[float] = []
     scenes: list[float] = []
@@ -202,7 +205,7 @@ def _try_out(
 
 
 def describe_outcome(choice: BudgetChoice, name: str) -> str:
-    """Says whether a budget is held, and by what."""
+    """Says whether a budget is held, and by which setting."""
     budget = f"{choice.budget_us:g} µs"
     trial = choice.trial
     if choice.is_scene and choice.holds:
@@ -225,14 +228,14 @@ def describe_outcome(choice: BudgetChoice, name: str) -> str:
 
 
 def describe_sacrifices(choice: BudgetChoice, scene: Scene) -> list[str]:
-    """Says of each knob that was turned from what to what, and what it costs.
+    """Describes each knob that was turned: its old and new value, and the error.
 
     Args:
-        choice: What was chosen.
-        scene: As it was.
+        choice: Choice to describe.
+        scene: Scene before the change.
 
     Returns:
-        A sentence for each knob, and one for all together where they are several.
+        A sentence for each knob, and one for all together if there are several.
     """
     sentences = [_describe_row(row, scene) for row in choice.trial.combination.rows]
     if choice.errors is not None:
@@ -249,7 +252,7 @@ def describe_file(choice: BudgetChoice, scene: Scene, name: str) -> list[str]:
 
 
 def describe_help(choice: BudgetChoice) -> list[str]:
-    """Says what would help where no setting does."""
+    """Says what would help if no setting does."""
     return [
         "Most of such a tick is Drake and Python round the core: `drake-haptics run"
         " SCENE --explain` shows the parts. The simulated arm alone is about half; a"
@@ -261,7 +264,7 @@ def describe_help(choice: BudgetChoice) -> list[str]:
 
 
 def to_budget_data(choice: BudgetChoice, scene: Scene) -> dict[str, Any]:
-    """Returns what came of a budget, ready for JSON."""
+    """Returns the outcome of a budget, ready for JSON."""
     return {
         "budget_us": choice.budget_us,
         "holds": choice.holds,
@@ -319,7 +322,7 @@ def _describe_errors(errors: Errors) -> str:
 
 
 def _read(scene: Scene, key: str) -> list[Any]:
-    """Returns the different values that a key has, of several objects."""
+    """Returns the different values of a key, of all objects for one of theirs."""
     items: list[Any] = [scene]
     path = key
     if key.startswith(_EACH_OBJECT):

@@ -1,4 +1,4 @@
-"""Measures what a setting does to the loop: energy created, and stable stiffness."""
+"""Measures the energy that a setting's loop creates, and its stable stiffness."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from drake_haptics.evaluation.accuracy.costs import cached_build
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError, run
 
-# The whole; all other accounts are its parts.
+# Account of the whole loop; all other accounts are its parts.
 _WHOLE = "device"
-# In words of the scene; the linearization's are those of its systems.
+# The linearization's own message is about systems, this one about the scene.
 _TWO_RATES = (
     "contacts are looked for at another rate than the tick's, and a linear map has one"
 )
-# Stiffnesses are tried within this factor of the scene's, and told to this share.
+# Stiffnesses are searched within this factor of the scene's, to this relative error.
 _RANGE = 1e4
 _TOLERANCE = 1e-2
 
@@ -28,10 +28,10 @@ class PressedPlace:
     """The place where a scene's hand stops, or why it stops nowhere.
 
     Attributes:
-        time_s: When it stops on its path, s; None where the tool rests nowhere.
+        time_s: Time on its path at which it stops, s; None if the tool rests nowhere.
         near_N_per_m: The scene's own largest stable stiffness there, from which those
             of other settings are not far, N/m.
-        failure_reason: Why the hand stops nowhere; empty where it stops.
+        failure_reason: Reason why the hand stops nowhere; empty if it stops.
     """
 
     time_s: float | None
@@ -44,9 +44,9 @@ class StableStiffness:
     """The largest stable stiffness of a coupling, or why it is not known.
 
     Attributes:
-        stiffness_N_per_m: N/m; infinite where there is no limit, None where it is not
-            known.
-        failure_reason: Why; empty where it is known.
+        stiffness_N_per_m: Largest stable stiffness, N/m; infinite if there is no limit,
+            None if it is not known.
+        failure_reason: Reason why it is not known; empty if it is known.
     """
 
     stiffness_N_per_m: float | None
@@ -54,22 +54,22 @@ class StableStiffness:
 
 
 def measure_created_energy(scene: Scene, duration_s: float) -> float:
-    """Returns the energy that a scene's loop makes of nothing in a run, J.
+    """Returns the energy that a scene's loop creates in a run, J.
 
-    It is the sum over all parts of the loop of what an `EnergyLedger` says they have
-    created. What the sampling of forces explains is in it, because a slower rate makes
-    more of it; the account of the whole loop is not, because there dampers hide what
-    another part makes.
+    It is the sum of the energies that the parts of the loop have created, as an
+    `EnergyLedger` accounts for them. Energy that the sampling of forces explains is
+    included, because a slower rate creates more of it; the account of the whole loop is
+    not, because there dampers hide what another part creates.
 
     Args:
-        scene: Runs in its simulated hand.
+        scene: Scene to run in its simulated hand.
         duration_s: Simulated time, s.
 
     Returns:
-        J; infinite where the loop diverges.
+        Energy, J; infinite if the loop diverges.
 
     Raises:
-        KeyboardInterrupt: At Ctrl-C.
+        KeyboardInterrupt: Ctrl-C is pressed.
     """
     try:
         statistics = run(cached_build(scene), duration_s, energy=True)
@@ -83,7 +83,7 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
 
 
 def find_pressed_place(scene: Scene) -> PressedPlace:
-    """Returns where a scene's tool is pressed most and comes to rest."""
+    """Returns the place where a scene's tool is pressed most and comes to rest."""
     try:
         held = hold_scene(scene)
         limit = _find_limit(scene, held, scene.coupling.stiffness_N_per_m)
@@ -95,11 +95,11 @@ def find_pressed_place(scene: Scene) -> PressedPlace:
 def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
     """Finds the largest stable stiffness of a coupling, held against its contact.
 
-    It is the translation's, at which an eigenvalue of one tick reaches magnitude 1.
+    It is the translational one at which an eigenvalue of one tick reaches magnitude 1.
 
     Args:
-        scene: Its other gains stay.
-        place: Where its hand stops.
+        scene: Scene, whose other gains stay.
+        place: Place where its hand stops.
     """
     if place.time_s is None:
         return StableStiffness(None, place.failure_reason)
@@ -113,10 +113,10 @@ def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
 
 
 def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
-    """Returns the largest stable stiffness, N/m, looked for from one near it.
+    """Returns the largest stable stiffness, N/m, searched from one near it.
 
     Raises:
-        ValueError: No stiffness is stable of which anything can be told.
+        ValueError: No stiffness was found stable, and some could not be analyzed.
     """
     stiffness = scene.coupling.stiffness_N_per_m
     lowest, highest = stiffness / _RANGE, stiffness * _RANGE
@@ -127,7 +127,7 @@ def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
         try:
             return analyze_held_scene(held, coupling).growth
         except ValueError as error:
-            # Where it is stable below, that is the limit.
+            # If lower stiffnesses are stable, the search ends here: this is the limit.
             reasons.append(str(error))
             return math.nan
 

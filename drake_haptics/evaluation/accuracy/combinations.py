@@ -13,9 +13,9 @@ from drake_haptics.evaluation.accuracy.setting import Setting, apply_checked, is
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
 
-# Another rate, device or hand is no price of a tick; passivity control is safety.
+# Another rate, device or hand does not make a tick cheaper; passivity is for safety.
 _NEVER = ("device.", "coupling.", "hand.", "effects.passivity")
-# Savings below this share of the scene's tick are within what runs differ by.
+# Savings below this share of the scene's tick are within the scatter of runs.
 _LEAST_SAVING = 0.02
 
 
@@ -24,9 +24,9 @@ class Combination:
     """Settings of several knobs at once.
 
     Attributes:
-        rows: One for each knob that is turned, in the order in which they were chosen.
-        p99_us: What their savings, added, leave of the scene's tick, 99th percentile,
-            µs: a guess until it is measured.
+        rows: Rows, one for each knob that is turned, in the order of their choice.
+        p99_us: Estimated 99th percentile of the tick, µs: the scene's less the sum of
+            the rows' savings.
     """
 
     rows: tuple[Row, ...]
@@ -34,7 +34,7 @@ class Combination:
 
     @property
     def setting(self) -> Setting:
-        """All of them as one setting."""
+        """All rows as one setting."""
         label = ", ".join(f"{r.setting.knob} {r.setting.label}" for r in self.rows)
         return Setting("several", label, merge_changes(self.rows))
 
@@ -42,14 +42,14 @@ class Combination:
 def list_combinations(study: AccuracyStudy, scene: Scene) -> list[Combination]:
     """Returns combinations of a study's settings, each faster than the one before.
 
-    The first is the scene as it is. Each next one turns that knob further whose saving
-    costs the least: force error, root mean square, per microsecond of the tick's 99th
-    percentile. That is the greedy answer to a knapsack with a choice from each knob.
-    Effects that the scene names go last, after all that is accuracy.
+    The first is the scene as it is. Each further one turns the knob whose saving costs
+    the least force error, root mean square, per microsecond of the tick's 99th
+    percentile: the greedy solution of a knapsack problem with a choice from each knob.
+    Effects that the scene names go last, after all settings of accuracy.
 
-    Never taken are settings of device, coupling and hand, of passivity control, and
-    those that make the scene another one: that diverge, that make the scene's coupling
-    unstable, or whose force is off by more than the device can show.
+    Settings of device, coupling, hand and passivity control are never taken. Neither
+    are those that diverge, that make the scene's coupling unstable, or whose force is
+    off by more than the device can show.
 
     Raises:
         ValueError: The study has no figures of the scene as it is.
@@ -98,7 +98,7 @@ def _is_never(key: str, value: Any) -> bool:
 def _find_cheapest_move(
     chosen: tuple[Row, ...], rows: Iterable[Row], start: Row, scene: Scene
 ) -> Row | None:
-    """Returns the row that saves time for the least error, from what is chosen."""
+    """Returns the row that saves time for the least error beyond the chosen rows."""
     now = {row.setting.knob: row for row in chosen}
     best, best_price = None, (math.inf, 0.0)
     for row in rows:
@@ -107,7 +107,7 @@ def _find_cheapest_move(
         if saving_us < _LEAST_SAVING * _p99(start):
             continue
         loss_N = max(_error(row) - _error(before), 0.0)
-        # Of two that cost nothing the one that saves more.
+        # Of two rows that cost nothing, the one that saves more wins.
         price = (loss_N / saving_us, -saving_us)
         if price < best_price and _fits(_turn(chosen, row), scene):
             best, best_price = row, price
@@ -115,13 +115,13 @@ def _find_cheapest_move(
 
 
 def _turn(chosen: tuple[Row, ...], row: Row) -> tuple[Row, ...]:
-    """Returns what is chosen with one knob turned to a row."""
+    """Returns the chosen rows with one knob turned to a row."""
     others = tuple(r for r in chosen if r.setting.knob != row.setting.knob)
     return (*others, row)
 
 
 def _fits(rows: tuple[Row, ...], scene: Scene) -> bool:
-    """Tells whether no row undoes another's change, and together they make a scene."""
+    """Tells whether no row undoes another's change and they make a valid scene."""
     changes = merge_changes(rows)
     if any(changes[k] != v for row in rows for k, v in row.setting.changes.items()):
         return False

@@ -1,4 +1,4 @@
-"""Measures what the ticks of a scene take: whole, inside the core, or in a new process.
+"""Measures the tick times of a scene: whole, inside the core, or in a new process.
 
 `python -m drake_haptics.evaluation.accuracy.costs FILE` is the new process.
 """
@@ -32,25 +32,25 @@ from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.contact.contact_query import DepthSearch
 
-# A diagram that Python systems are part of is never freed: that it is kept here costs
-# nothing, and another one for the next measurement of the scene would.
+# A diagram with Python systems is never freed: keeping it here costs nothing, and
+# building another one for the next measurement of the scene would.
 _BUILT: dict[str, HapticDiagram] = {}
-# As often each tick is timed; but no pass begins later than this, s.
+# Number of passes that time each tick; but no pass begins later than this, s.
 _PASSES = 3
 _LONGEST_S = 1.0
-# Where nothing touches the tool, m.
+# Distance at which nothing touches the tool, m.
 _FAR_M = 1e3
-# A scene runs this long before it is another one's turn, s.
+# A scene runs this long before the next one takes its turn, s.
 _PART_S = 0.25
-# A lap that is longer is cut.
+# A longer lap is cut.
 _LONGEST_LAP_S = 5.0
 
 
 def cached_build(scene: Scene) -> HapticDiagram:
     """Returns the diagram of a scene, the same one for the same scene.
 
-    All that a run changes is in its context, so that runs know nothing of each other.
-    A mesh file that changes meanwhile is not seen.
+    A run changes nothing but its context, so that runs do not affect each other. A mesh
+    file that changes meanwhile is not read again.
     """
     key = repr(asdict(scene))  # all of it: a scene's own repr is a line
     if key not in _BUILT:
@@ -61,9 +61,9 @@ def cached_build(scene: Scene) -> HapticDiagram:
 def time_in_turns(scenes: Sequence[Scene], duration_s: float) -> list[TickTimes]:
     """Runs scenes in real time, in turns of a quarter of a second; returns their times.
 
-    Between two ticks the processor rests and others use its caches, so that a tick
-    takes longer than in a loop that never waits. What disturbs the machine for a while
-    disturbs all scenes alike, so that the ratios of their times hold.
+    Between two ticks the processor rests and other programs use its caches, so that a
+    tick takes longer than in a loop that never waits. A disturbance of the machine
+    affects all scenes alike, so that the ratios of their times hold.
 
     Args:
         scenes: Scenes to run, each from its start.
@@ -71,7 +71,7 @@ def time_in_turns(scenes: Sequence[Scene], duration_s: float) -> list[TickTimes]
 
     Raises:
         RunError: A loop diverges.
-        KeyboardInterrupt: At Ctrl-C.
+        KeyboardInterrupt: Ctrl-C is pressed.
     """
     loops = [cached_build(scene) for scene in scenes]
     paces = [RealTimePacer(loop.period_s) for loop in loops]
@@ -118,25 +118,25 @@ def _run_in_parts(
 
 
 def scale_times(times: TickTimes, ours: TickTimes, other: TickTimes) -> TickTimes:
-    """Returns times multiplied by how much longer others take than ours."""
+    """Returns times multiplied by the ratio of other times to ours."""
     factors = np.array(astuple(other)[1:]) / np.array(astuple(ours)[1:])
     return TickTimes(other.ticks, *(factors * astuple(times)[1:]).tolist())
 
 
 def combine(repeats: Sequence[TickTimes]) -> TickTimes:
-    """Returns the middle of several runs: of each figure the median.
+    """Returns the median of each figure over several runs.
 
-    Each run has its own percentiles, as a user's has, interruptions by the system
-    included; the median drops a run that something else disturbed.
+    Each run has its own percentiles, which include interruptions by the system as a
+    user's do; the median drops a run that something else disturbed.
     """
     ticks, *times_us = np.median([astuple(r) for r in repeats], axis=0).tolist()
     return TickTimes(int(ticks), *times_us)
 
 
 def make_native_part(haptic: HapticDiagram) -> NativePart:
-    """Returns what the systems of a scene ask the core.
+    """Returns the queries of a scene's systems to the core.
 
-    Effects are no part of it, and what a loop leaves out under load is not left out.
+    Effects are not included; work that a loop may leave out under load is included.
     """
     scene, effects = haptic.scene, haptic.scene.effects
     contact, items = scene.contact, scene.environment
@@ -170,13 +170,13 @@ def make_native_part(haptic: HapticDiagram) -> NativePart:
 def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
     """Times query, clusters and wrench of a recorded motion, without Python.
 
-    The query is timed inside the core; of carrying, clusters and wrench what a call
-    takes more than one without contacts. Each tick counts with the middle of several
-    passes, so that the percentiles are those of the work, not of what disturbed it.
+    The query is timed inside the core; extrapolation, clusters and wrench are timed by
+    how much longer a call takes than one without contacts. A tick's time is that of the
+    middle of several passes, so that the percentiles are free of disturbances.
 
     Args:
-        part: What the core is asked.
-        motion: Of the tool.
+        part: Queries to the core.
+        motion: Motion of the tool.
     """
     far = np.array([1.0, 0.0, 0.0, 0.0, _FAR_M, 0.0, 0.0])
     nothing, _ = part.make_search().look(far)
@@ -194,7 +194,7 @@ def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
             contacts, carry_s = carry.call((found, X_WT))
             clusters, cluster_s = cluster.call((contacts,))
             _, force_s = force.call((clusters, X_WT[4:], motion.V_WT[tick]))
-            # A call without contacts is the least there is, but for the clock's ticks.
+            # No call is faster than one without contacts, but for the clock's ticks.
             passes[-1][tick] = query_s + carry_s + cluster_s + force_s
     return TickTimes.of(np.maximum(typical(np.array(passes)), 0.0))
 
@@ -224,7 +224,7 @@ def measure_p99(scene: Scene) -> float:
 
 
 def _main(file: str) -> None:
-    """Prints the figure of a scene file."""
+    """Prints the 99th percentile of the ticks of a scene file, µs."""
     scene = load_scene(file)
     lap_s = make_hand_path(scene.hand.path).duration_s
     try:

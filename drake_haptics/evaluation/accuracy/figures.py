@@ -15,7 +15,7 @@ from drake_haptics.report.plain_data import (
     to_plain_data,
 )
 
-# Why a stiffness is not known that nobody asked for.
+# Reason why a stiffness is not known that nobody asked for.
 NOT_SOUGHT = "not sought"
 
 
@@ -24,9 +24,9 @@ class Cost:
     """The time that a setting costs.
 
     Attributes:
-        tick: Whole ticks of the loop, paced by the clock.
-        native: The contacts' part inside the core: query, clusters, wrench.
-        instructions: Of that part, mean per tick; None where they were not counted.
+        tick: Times of whole ticks of the loop, paced by the clock.
+        native: Times of the contacts' part inside the core: query, clusters, wrench.
+        instructions: Instructions of that part, mean per tick; None if not counted.
     """
 
     tick: TickTimes
@@ -41,19 +41,19 @@ class Errors:
     Attributes:
         force_rms_N: Root mean square of the force's difference from the reference
             setting's, N.
-        force_max_N: The largest, N.
-        torque_rms_Nm: The same of the torque at the tool's center of mass, N·m.
-        torque_max_Nm: The largest, N·m.
+        force_max_N: Largest difference of the force, N.
+        torque_rms_Nm: Root mean square of the difference of the torque at the tool's
+            center of mass, N·m.
+        torque_max_Nm: Largest difference of this torque, N·m.
         depth_max_m: Largest difference of the deepest contact's distance from the
             exact one, m.
         normal_jump_deg: Largest turn of the force's direction from one tick to the
             next, beyond the reference's own, degrees.
-        energy_created_J: What the loop made of nothing while it ran, J; NaN where no
-            loop was run.
+        energy_created_J: Energy that the loop created while it ran, J; NaN if no loop
+            was run.
         stable_stiffness_N_per_m: Largest stable stiffness of the coupling against
-            this contact, N/m; None where it is not known, infinite where there is no
-            limit.
-        stiffness_why_not: Why it is not known, empty otherwise.
+            this contact, N/m; None if it is not known, infinite if there is no limit.
+        stiffness_why_not: Reason why it is not known, empty otherwise.
     """
 
     force_rms_N: float
@@ -72,12 +72,12 @@ class Row:
     """One setting's price and error.
 
     Attributes:
-        setting: What was set.
+        setting: Setting of the row.
         is_scene: Whether this is the scene as it is.
-        cost: What it takes; None where it could not be measured.
-        errors: How wrong it is; None where it could not be measured.
+        cost: Time of the setting; None if it could not be measured.
+        errors: Errors of the setting; None if they could not be measured.
         pieces: Convex pieces of the tool and of all objects.
-        failure_reason: Why it could not be measured, empty otherwise.
+        failure_reason: Reason why it could not be measured, empty otherwise.
     """
 
     setting: Setting
@@ -93,11 +93,12 @@ class PeerRow:
     """Another way to the contact wrench, on the same motion.
 
     Attributes:
-        library: Its name and version.
-        method: What it was asked for, in words.
-        native: Time inside the library per tick.
-        errors: As for ours; without energy and stiffness (NaN, None).
-        failure_reason: Why there are no figures, empty otherwise.
+        library: Name and version of the library.
+        method: Description of its query.
+        native: Time inside the library per tick; None if it could not be measured.
+        errors: Errors as in a `Row`, without energy and stiffness (NaN, None); None if
+            they could not be measured.
+        failure_reason: Reason why there are no figures, empty otherwise.
     """
 
     library: str
@@ -112,14 +113,15 @@ class AccuracyStudy:
     """All rows of a scene.
 
     Attributes:
-        scene: Its name.
-        description: Its sentence.
-        machine: See `drake_haptics.evaluation.measuring.timing.describe_machine`.
-        ticks: Of the recorded motion.
-        contact_ticks: Those of them with a contact.
-        reference: What the wrench is compared with: the finest exact setting.
-        rows: Of each knob, its settings in order; the scene as it is first.
-        peers: Other libraries on the same motion, those that are installed.
+        scene: Name of the scene.
+        description: Description of the scene.
+        machine: Machine that took the times, see
+            `drake_haptics.evaluation.measuring.timing.describe_machine`.
+        ticks: Ticks of the recorded motion.
+        contact_ticks: Ticks of the motion with a contact.
+        reference: Setting that the wrench is compared with, the finest exact one.
+        rows: Rows of each knob, its settings in order; the scene as it is first.
+        peers: Rows of other libraries on the same motion. Defaults to empty.
     """
 
     scene: str
@@ -143,7 +145,7 @@ class AccuracyStudy:
         return asdict(self)
 
     def to_json_data(self) -> dict[str, Any]:
-        """Returns the study as what `json.dumps(allow_nan=False)` takes.
+        """Returns the study as data for `json.dumps(allow_nan=False)`.
 
         Infinite numbers are the text "infinite", and NaN is "none"; a null is a figure
         that was not sought.
@@ -153,5 +155,5 @@ class AccuracyStudy:
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> AccuracyStudy:
-        """Returns the study that `to_dict` or `to_json_data` made data of."""
+        """Returns the study from the data of `to_dict` or `to_json_data`."""
         return read_figures(AccuracyStudy, data)

@@ -18,18 +18,18 @@ from drake_haptics.geometry.parsing.model_file import (
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
 
 Number = TypeVar("Number", int, float)
-# Lengths are chosen in relation to the tolerance, or to this where a scene has none.
+# Lengths are multiples of the tolerance, or of this if a scene's tolerance is 0, m.
 _LENGTH_M = 1e-3
 _TOLERANCES = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0)
 _CLUSTERS = (1.0, 4.0, 16.0)
 _WALK_STEPS = (1, 2, 4, 16, 1024)
 _QUERY_EVERY = (2, 4, 10)
 _RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
-# No tick is so short: after some 150 of them all is left out that may be.
+# No tick is so short: after some 150 ticks all optional work is left out.
 _BUDGET_WORDS = {1.0: "1 µs: all left out that may be"}
-# What a material says of an effect.
+# Effect -> the key of a material that belongs to it.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
-# Shares of a mesh's triangles; fewer than this many are no shape any more.
+# Divisors of a mesh's triangle count; fewer than this many triangles lose the shape.
 _TRIANGLES = (2, 4, 8)
 _LEAST_TRIANGLES = 20
 _MERGED_M = (1e-4, 3e-4, 1e-3)
@@ -59,11 +59,12 @@ def _list_numbers(
     """Returns a setting for each number and the scene's own, the largest first.
 
     Args:
-        key: What they set.
+        key: Key that they set.
         values: The numbers.
-        own: The scene's own, if it has one.
-        name: Returns the label of a number.
-        off: The label of the setting without any number, which comes first.
+        own: The scene's own number, if it has one.
+        name: Function that returns the label of a number.
+        off: Label of the setting without a number, which comes first. Defaults to no
+            such setting.
     """
     without = [] if off is None else [Setting(key, off, {key: None})]
     numbers = reversed(_with_own(values, own))
@@ -109,7 +110,7 @@ def list_clusterings(scene: Scene) -> list[Setting]:
 
 
 def list_effect(scene: Scene, name: str) -> list[Setting]:
-    """Returns a scene with an effect, and without it."""
+    """Returns a setting with an effect, and one without it."""
     key, own = f"effects.{name}", getattr(scene.effects, name)
     without: dict[str, Any] = {key: None}
     if name in _OF_MATERIAL and own is not None:
@@ -121,22 +122,22 @@ def list_effect(scene: Scene, name: str) -> list[Setting]:
 
 
 def list_query_rates(scene: Scene) -> list[Setting]:
-    """Returns how often contacts are looked for."""
+    """Returns rates of the contact query, that of every tick first."""
     rates = [scene.device.rate_hz / every for every in _QUERY_EVERY]
     key, own_hz = "contact.query_rate_hz", scene.contact.query_rate_hz
     return _list_numbers(key, rates, own_hz, "{:g} Hz".format, "every tick")
 
 
 def list_rates(scene: Scene) -> list[Setting]:
-    """Returns how often the loop ticks."""
+    """Returns rates of the loop."""
     own_hz = scene.device.rate_hz
     return _list_numbers("device.rate_hz", _RATES_HZ, own_hz, "{:g} Hz".format)
 
 
 def list_budgets(scene: Scene) -> list[Setting]:
-    """Returns the loop that leaves nothing out, and the one that leaves out all it may.
+    """Returns the budget that leaves nothing out, and that which leaves out all it may.
 
-    What lies between depends on the machine and the moment, and so can have no figures.
+    A budget between them depends on the machine and the moment: it has no figures.
     """
     return _list_numbers(
         "device.tick_budget_us",
@@ -152,11 +153,11 @@ def _find_length(scene: Scene) -> float:
 
 
 def list_decompositions(scene: Scene, where: str) -> list[Setting]:
-    """Returns ways to cut a mesh, those that are installed.
+    """Returns the ways to cut a mesh that are installed.
 
     Args:
-        scene: Has the meshes.
-        where: `tool`, or `environment` for all objects.
+        scene: Scene with the meshes.
+        where: Part of the scene: `tool`, or `environment` for all objects.
     """
     key, error = f"{where}.decomposition", f"{where}.decomposition_error_m"
     words = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
@@ -173,7 +174,7 @@ def list_decompositions(scene: Scene, where: str) -> list[Setting]:
 
 
 def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
-    """Returns decimations, of meshes that have triangles to spare."""
+    """Returns decimations of meshes that have triangles to spare."""
     key = f"{where}.max_triangles"
     largest = max(_count_triangles(part) for part in _find_parts(scene, where))
     counts = [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES]
@@ -183,10 +184,10 @@ def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
 
 
 def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
-    """Returns how well polytopes follow round shapes, where there are any."""
+    """Returns chord errors of round shapes, if there are any."""
     key, own_m = f"{where}.chord_error_m", _find_own(scene, where, "chord_error_m")
     parts = _find_parts(scene, where)
-    # Meshes of triangles have none, and no such key.
+    # Triangle meshes have no round shapes, and no such key.
     if not all(is_model_file(part.mesh) for part in parts):
         return []
     if not any(_is_round(part) for part in parts):
@@ -202,7 +203,7 @@ def _find_parts(scene: Scene, where: str) -> Sequence[Tool | EnvironmentObject]:
 
 
 def _find_own(scene: Scene, where: str, name: str) -> Any:
-    """Returns what all parts have; None where they differ."""
+    """Returns the value that all parts have; None if they differ."""
     own = {getattr(part, name) for part in _find_parts(scene, where)}
     return own.pop() if len(own) == 1 else None
 
@@ -210,7 +211,7 @@ def _find_own(scene: Scene, where: str, name: str) -> Any:
 def _count_triangles(
     part: Tool | EnvironmentObject, chord_error_m: float | None = None
 ) -> int:
-    """Returns how many triangles a part has before it is reduced."""
+    """Returns the number of triangles of a part before it is reduced."""
     if not is_model_file(part.mesh):
         return len(load_mesh(part.mesh, scale=part.scale).triangles)
     error_m = chord_error_m or part.chord_error_m or DEFAULT_CHORD_ERROR_M
@@ -228,12 +229,12 @@ def _is_round(part: Tool | EnvironmentObject) -> bool:
 
 @dataclass(frozen=True)
 class Knob:
-    """Something that can be turned.
+    """Keys of a scene that trade accuracy for time together.
 
     Attributes:
-        keys: Of the scene that it sets.
-        list_settings: Its settings for a scene, from accurate to fast. The one that the
-            scene has is among them.
+        keys: Keys of the scene that it sets.
+        list_settings: Function that lists its settings for a scene, from accurate to
+            fast. The one that the scene has is among them.
     """
 
     keys: tuple[str, ...]
@@ -249,7 +250,7 @@ def list_settings(scene: Scene) -> tuple[Setting, ...]:
 
 
 def list_few_settings(scene: Scene) -> tuple[Setting, ...]:
-    """Returns the scene as it is, and of each knob the fastest setting but its own."""
+    """Returns the scene as it is, and each knob's fastest setting that changes it."""
     fastest = {
         setting.knob: setting
         for setting in list_settings(scene)
@@ -259,7 +260,7 @@ def list_few_settings(scene: Scene) -> tuple[Setting, ...]:
 
 
 def make_reference(scene: Scene) -> Setting:
-    """Returns the finest exact setting: what wrenches are compared with.
+    """Returns the finest exact setting, which wrenches are compared with.
 
     Tolerance, gains, effects and the kind of depth stay the scene's.
     """

@@ -22,27 +22,27 @@ from drake_haptics.evaluation.measuring.valgrind import (
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 _REST = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-# Where nothing touches the tool, m.
+# Distance at which nothing touches the tool, m.
 _FAR_M = 1e3
 
 
 @dataclass(frozen=True, eq=False)
 class NativePart:
-    """The queries to the core in each tick, without Drake. Can be pickled.
+    """The queries to the core in each tick, without Drake; they can be pickled.
 
     Attributes:
         tool: Pieces of the tool.
-        objects: Pieces of what it meets.
+        objects: Pieces of each object.
         X_WO: (m, 7) poses [qw qx qy qz x y z] of the objects, m.
-        search_m: How far contacts are looked for, m.
-        depth: Of two pieces in overlap, as `SceneTracker` has it.
-        max_walk_steps: The same.
-        query_every: Every how many ticks contacts are looked for, to be carried along
-            from then on; None where each tick looks for its own.
-        tolerance_m: How far contacts push, m.
-        cluster_size_m: δ of the octree, m; None where contacts share stiffness.
-        stiffness_N_per_m: (m,) of each object, N/m.
-        damping_Ns_per_m: (m,) of each object, N·s/m.
+        search_m: Distance up to which contacts are found, m.
+        depth: Kind of depth of two pieces in overlap, see `SceneTracker`.
+        max_walk_steps: Bound of the walk to a depth, see `SceneTracker`.
+        query_every: Number of ticks from one contact query to the next, between which
+            contacts are extrapolated; None if every tick has a query of its own.
+        tolerance_m: Distance up to which contacts push, m.
+        cluster_size_m: δ of the octree, m; None if contacts share stiffness.
+        stiffness_N_per_m: (m,) stiffness of each object, N/m.
+        damping_Ns_per_m: (m,) damping of each object, N·s/m.
     """
 
     tool: Decomposition
@@ -58,18 +58,18 @@ class NativePart:
     damping_Ns_per_m: np.ndarray
 
     def make_search(self) -> ContactSearch:
-        """Returns what looks for contacts from the first tick on."""
+        """Returns a contact search that begins at the first tick."""
         return ContactSearch(self)
 
     def make_clustering(self) -> Callable[[_core.ContactSet], _core.ClusterSet]:
-        """Returns what makes clusters of contacts."""
+        """Returns a function that makes clusters of contacts."""
         cluster: Callable[..., Any] = _core.share_stiffness
         if self.cluster_size_m is not None:
             cluster = partial(_core.cluster_contacts, delta=self.cluster_size_m)
         return partial(cluster, tolerance=self.tolerance_m)
 
     def make_force(self) -> Callable[..., _core.PenaltyWrench]:
-        """Returns what makes a wrench of clusters, the tool's position and velocity."""
+        """Returns the function of clusters, tool position and velocity to a wrench."""
         return partial(
             _core.penalty_force,
             p_WO=self.X_WO[:, 4:].copy(),
@@ -86,7 +86,7 @@ class ContactSearch:
         """Begins before the first tick.
 
         Args:
-            part: Whose contacts are found.
+            part: Queries to the core.
         """
         self._every = part.query_every
         self._tracker = _core.SceneTracker(
@@ -102,13 +102,13 @@ class ContactSearch:
         self._found: _core.ContactSet | None = None
 
     def look(self, X_WT: np.ndarray) -> tuple[_core.ContactSet, float]:
-        """Looks for contacts if it is time to.
+        """Looks for contacts if this tick has a query.
 
         Args:
             X_WT: (7,) pose of the tool at the next tick.
 
         Returns:
-            What was found last, and the seconds that this look took in the core.
+            Contacts of the last query, and the time of this one in the core, s.
         """
         if self._every is None:
             found = self._tracker.query(X_WT)
@@ -117,7 +117,7 @@ class ContactSearch:
         self._tick += 1
         if tick == 0:
             self._sample = X_WT
-        # What is sampled at a tick is known from the next one on.
+        # Contacts of a pose that is sampled at a tick are known from the next one on.
         if self._found is None or (tick - 1) % self._every == 0:
             self._found_at = self._sample
             self._found = self._tracker.query(self._found_at)
@@ -127,25 +127,26 @@ class ContactSearch:
         return self._found, query_s
 
     def carry(self, found: _core.ContactSet, X_WT: np.ndarray) -> _core.ContactSet:
-        """Returns contacts that were found where the tool is now."""
+        """Returns contacts that were found, extrapolated to the tool's pose."""
         if self._every is None:
             return found
         return self._carrier.advance(found, self._found_at, X_WT)
 
 
 def count_native(part: NativePart, X_WT: np.ndarray, V_WT: np.ndarray) -> float:
-    """Returns how many instructions query, clusters and wrench take in a tick.
+    """Returns the number of instructions of query, clusters and wrench in a tick.
 
-    What the same calls take far from everything is taken off: Python, the binding and
-    the start of the program. The first tick, which finds the first contacts, is in it.
+    The count of the same calls far from all objects is subtracted: Python, the binding
+    and the start of the program. The first tick, which finds the first contacts, is
+    included.
 
     Args:
-        part: What the core is asked.
+        part: Queries to the core.
         X_WT: (n, 7) poses of the tool.
-        V_WT: (n, 6) its velocities.
+        V_WT: (n, 6) spatial velocities of the tool.
 
     Returns:
-        The mean over all ticks.
+        Mean over all ticks.
 
     Raises:
         subprocess.CalledProcessError: The program failed.

@@ -48,10 +48,10 @@ def write_accuracy_page(study: AccuracyStudy, path: Path, command: str) -> None:
     """Writes the page as one HTML file, and its picture beside it as PNG.
 
     Args:
-        study: What to show.
-        path: Of the HTML file; the picture has the suffix `.png` instead.
-        command: The words of the command line that measured it, for those that are
-            told; without them a row would be another motion's.
+        study: Study to show.
+        path: Path of the HTML file; the picture has the suffix `.png` instead.
+        command: Command line that measured the study. The page shows it to measure
+            rows again, on the same motion.
 
     Raises:
         ValueError: The path has the picture's suffix.

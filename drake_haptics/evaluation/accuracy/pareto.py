@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
 from drake_haptics.evaluation.accuracy.setting import is_comparable
 
-# Smaller errors are alike: nobody feels so little.
+# Smaller errors count as equal: nobody feels so little.
 ERROR_FLOOR_N = 1e-3
 # A knee lies this far below its chord, in a front that fills a square of side 1.
 _LEAST_DEPTH = 0.1
-# A front whose times differ by less has no knee: runs of one setting differ so.
+# A front whose times differ by less has no knee: runs of one setting differ as much.
 _LEAST_SPAN = 1.05
 
 
@@ -22,9 +22,10 @@ class Front:
     """The settings that no other one beats in both time and error.
 
     Attributes:
-        rows: Cheapest first, and so most wrong first; each measured.
-        knees: Those of them after which accuracy becomes dear, in the same order.
-        bend: Where it bends most towards the corner; the first knee, if there is one.
+        rows: Measured rows, the cheapest and so least accurate first.
+        knees: Rows beyond which accuracy becomes expensive, in the same order.
+        bend: Row where the front bends most towards the corner, which is the first knee
+            if there is one; None where `find_bend` returns None.
     """
 
     rows: tuple[Row, ...]
@@ -59,9 +60,10 @@ def find_front(
     """Finds the front of the rows that were measured.
 
     Args:
-        study: Rows that were not measured are left out, and those whose figure is
-            no error, see `is_comparable`.
-        get_time_us: What is paid, µs.
+        study: Study to search. Rows that were not measured, or whose figure is not an
+            error (see `is_comparable`), are left out.
+        get_time_us: Function that returns the time of a row, µs. Defaults to the median
+            inside the core.
     """
     rows = [
         row
@@ -83,7 +85,7 @@ def find_front_points(points: Sequence[tuple[float, float]]) -> list[int]:
     """Returns the indices of the points that no other one beats, by time.
 
     Args:
-        points: Times and errors, any unit. Of equal points the first one counts.
+        points: Times and errors, in any unit. Of equal points the first one counts.
     """
     front: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: (*points[i], i)):
@@ -95,17 +97,17 @@ def find_front_points(points: Sequence[tuple[float, float]]) -> list[int]:
 def find_knee_points(front: Sequence[tuple[float, float]]) -> list[int]:
     """Returns the indices of the knees of a front.
 
-    Time is linear, error logarithmic: what is asked is what a tenth of the error costs.
-    The front fills a square of side 1. The first knee is the point farthest below the
-    straight line between the ends (Satopää et al. 2011), if that is a tenth at least;
-    further ones are found so on either side of it (Douglas and Peucker 1973). Another
-    unit of either axis changes nothing.
+    Time is linear and error logarithmic, to show what a tenth of the error costs. The
+    front is scaled to a square of side 1. The first knee is the point farthest below
+    the straight line between the ends (Satopää et al. 2011), if it is at least a tenth
+    below; further ones are found alike on either side of it (Douglas and Peucker 1973).
+    The units of the axes do not matter.
 
     Args:
         front: Positive times and errors, time rising and error falling.
 
     Returns:
-        By time; few, and none if all times are alike.
+        Indices in order of time; empty if all times are alike.
     """
     if len(front) < 3 or front[-1][0] < _LEAST_SPAN * front[0][0]:
         return []
@@ -131,10 +133,11 @@ def find_bend(front: Sequence[tuple[float, float]]) -> int | None:
     and no knee.
 
     Args:
-        front: As `find_knee_points` takes it.
+        front: Points as for `find_knee_points`.
 
     Returns:
-        None of fewer than three points, or if none is below the line between the ends.
+        The index; None for fewer than three points, or if no point is below the line
+        between the ends.
     """
     if len(front) < 3 or front[-1][0] <= front[0][0]:
         return None
@@ -145,7 +148,7 @@ def find_bend(front: Sequence[tuple[float, float]]) -> int | None:
 
 
 def _scale(values: Sequence[float]) -> list[float]:
-    """Returns the values as shares of the way from the least to the largest."""
+    """Returns the values scaled to [0, 1]."""
     least, span = min(values), max(values) - min(values)
     return [(value - least) / span for value in values]
 
@@ -153,7 +156,7 @@ def _scale(values: Sequence[float]) -> list[float]:
 def _find_deepest(
     x: Sequence[float], y: Sequence[float], first: int, last: int
 ) -> tuple[int, float]:
-    """Returns the point farthest below a chord, and how far it is."""
+    """Returns the point farthest below a chord, and its distance from the chord."""
     dx, dy = x[last] - x[first], y[last] - y[first]
     length = math.hypot(dx, dy)
     depths = {

@@ -37,15 +37,15 @@ if TYPE_CHECKING:
 _SIZE_INCH = (13.0, 9.0)
 _MARKERS = "osD^vP<>Xhpd8"
 _PALE = 0.5
-# The axis of errors ends this factor beyond what it shows: labels have room.
+# The axis of errors ends this factor beyond the points, so that labels have room.
 _MARGIN_ERROR = 2.0
 
 
 def draw_study(study: AccuracyStudy) -> Figure:
-    """Draws on a figure of its own, which no window shows.
+    """Draws a study on a figure of its own, which no window shows.
 
-    On the left is time inside the core, which other libraries have too; on the right
-    that of the whole tick. Rows that were not measured are left out.
+    The left axes show time inside the core, which other libraries have too, and the
+    right axes that of the whole tick. Rows that were not measured are left out.
     """
     from matplotlib.figure import Figure
 
@@ -71,7 +71,7 @@ def draw_study(study: AccuracyStudy) -> Figure:
         " and left out of the front: no error, but another model or loop."
         f" {describe_machine(study)}",
     )
-    figure.draw_without_rendering()  # settles where everything is
+    figure.draw_without_rendering()  # fixes the layout, which labels are placed in
     for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
         front = find_front(study, get_time_us)
         marked = [
@@ -116,14 +116,14 @@ def _label_knob(knob: _Knob, axes: Axes, get_time_us: Callable[[Row], float]) ->
 
 @dataclass(frozen=True)
 class _Knob:
-    """The parts of a knob that are drawn.
+    """A knob as it is drawn.
 
     Attributes:
-        name: Of the knob.
-        rows: Those that were measured; one at least is not the scene as it is.
-        marker: As Matplotlib has it.
-        color: The same of all knobs whose figures are no errors.
-        alpha: Those are paler too.
+        name: Name of the knob.
+        rows: Rows that were measured; at least one is not the scene as it is.
+        marker: Marker of its points, a name of Matplotlib's.
+        color: Color of its points, one for all knobs whose figures are not errors.
+        alpha: Opacity of its points, lower for those knobs.
     """
 
     name: str
@@ -200,7 +200,7 @@ def _take_scene(study: AccuracyStudy) -> list[Row]:
 
 
 def _take_reference(study: AccuracyStudy) -> list[Row]:
-    """Returns the reference's own row, where it is one of the rows."""
+    """Returns the reference's own row, if it is one of the rows."""
     return [
         row
         for row in study.rows

@@ -19,7 +19,7 @@ from drake_haptics.simulation.run import make_simulator, run
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 
-# Ticks at the same time differ by round-off of their numbers.
+# Numbers of ticks at the same time differ by round-off.
 _SAME_TICK = 1e-6
 
 
@@ -28,14 +28,15 @@ class RecordedMotion:
     """Motion of handle H and tool in the world W, tick by tick.
 
     Poses are [qw qx qy qz x y z], m; velocities are [ω; v] of the frame's origin in the
-    world, rad/s and m/s. Row k is what the updates of tick k + 1 of the run saw.
+    world, rad/s and m/s. Row k is the state that the updates of tick k + 1 of the run
+    read.
 
     Attributes:
-        period_s: The tick, s.
+        period_s: Period of the ticks, s.
         X_WT: (n, 7) poses of the tool.
-        V_WT: (n, 6) its spatial velocities.
+        V_WT: (n, 6) spatial velocities of the tool.
         X_WH: (n, 7) poses of the handle.
-        V_WH: (n, 6) its spatial velocities.
+        V_WH: (n, 6) spatial velocities of the handle.
     """
 
     period_s: float
@@ -50,25 +51,25 @@ class RecordedMotion:
 
     @property
     def times_s(self) -> np.ndarray:
-        """(n,) times, s, the first row's is 0."""
+        """(n,) times of the rows, s; the first is 0."""
         return self.period_s * np.arange(len(self))
 
     def find_ticks(self, period_s: float) -> list[tuple[int, int]]:
-        """Returns which ticks of a loop fall on this motion.
+        """Returns the ticks of a loop that fall on this motion.
 
         Args:
-            period_s: The tick of the loop, s.
+            period_s: Period of the loop's ticks, s.
 
         Returns:
-            The row and the number of the last tick of the loop up to it, for each row
-            at which that is another one than at the row before.
+            Each row at which the loop has a new tick, with the number of its last tick
+            up to that row.
         """
         numbers = (self.times_s / period_s + _SAME_TICK).astype(int)
         rows = np.flatnonzero(np.diff(numbers, prepend=-1))
         return list(zip(rows.tolist(), numbers[rows].tolist(), strict=True))
 
     def sample(self, period_s: float) -> RecordedMotion:
-        """Returns the rows at which a loop of another tick has one, s."""
+        """Returns the rows at which a loop of another period, s, has a new tick."""
         rows = [row for row, _ in self.find_ticks(period_s)]
         return self._take(rows, max(period_s, self.period_s))
 
@@ -82,10 +83,10 @@ class RecordedMotion:
 
 
 def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:
-    """Returns the time of one lap of the hand's path, s, or of a longer one a part.
+    """Returns the time of one lap of the hand's path, at most `longest_s`, s.
 
-    Some thousand ticks show what a setting does. Where the hand goes nowhere they are
-    those in which the tool comes to rest.
+    Some thousand ticks show what a setting does. If the hand does not move, the tool
+    comes to rest in them.
     """
     return min(make_hand_path(scene.hand.path).duration_s or longest_s, longest_s)
 
@@ -94,14 +95,14 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
     """Runs a scene in its simulated hand and records how handle and tool move.
 
     Args:
-        scene: What to run. The same scene gives the same motion, bit for bit.
-        duration_s: Simulated time, s; that of `choose_duration` where not given.
+        scene: Scene to run. The same scene gives the same motion, bit for bit.
+        duration_s: Simulated time, s. Defaults to that of `choose_duration`.
 
     Raises:
         SceneError: The scene cannot be built.
         MeshError: A mesh cannot be treated.
         drake_haptics.simulation.run.RunError: The loop diverges.
-        KeyboardInterrupt: At Ctrl-C.
+        KeyboardInterrupt: Ctrl-C is pressed.
     """
     if duration_s is None:
         duration_s = choose_duration(scene)
@@ -131,8 +132,8 @@ class ToolReplay:
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] at the tool's origin in the world, N·m and N: of
             contact and of all effects that push the tool.
-        distance: (n,) of the deepest contact, m; infinite if no contact is nearer
-            than the scene's tolerance.
+        distance: (n,) distance of the deepest contact, m; infinite if no contact is
+            nearer than the scene's tolerance.
     """
 
     F_To_W: np.ndarray
@@ -144,9 +145,9 @@ class ReplayedTick:
     """A tick of a scene at which its tool is where a motion has it.
 
     Attributes:
-        row: Of the motion.
-        haptic: The scene's diagram.
-        root: Its context, to be read.
+        row: Row of the motion.
+        haptic: Diagram of the scene.
+        root: Context of the diagram, to be read.
     """
 
     row: int
@@ -155,14 +156,14 @@ class ReplayedTick:
 
 
 def replay_tool(scene: Scene, motion: RecordedMotion) -> ToolReplay:
-    """Returns what a scene's contacts answer when its tool moves as recorded.
+    """Returns the wrenches of a scene's contacts when its tool moves as recorded.
 
-    The loop is open: however wrong an answer is, the tool goes on as it did. At a tick
-    of the motion at which the scene has none the last answer holds, as in the loop.
+    The loop is open: a wrong wrench does not change the motion. At a row of the motion
+    at which the scene has no tick, the last wrench holds, as in the loop.
 
     Args:
-        scene: Whose answer is wanted.
-        motion: From any run.
+        scene: Scene of the contacts.
+        motion: Motion from any run.
 
     Raises:
         SceneError: The scene cannot be built.
@@ -206,13 +207,13 @@ def _build(scene: Scene, motion: RecordedMotion) -> HapticDiagram:
         max_torque_Nm=site.max_torque_Nm,
     )
     with warnings.catch_warnings():
-        # Whether its coupling is stable is measured.
+        # The stability of its coupling is measured anyway.
         warnings.simplefilter("ignore", SceneWarning)
         return BuildHapticDiagram(scene, device=device)
 
 
 def _read_wrench(tick: ReplayedTick) -> np.ndarray:
-    """Returns the wrench (6,) of all that pushes the tool but the coupling."""
+    """Returns the wrench (6,) of all sources on the tool but the coupling."""
     total = np.zeros(6)
     for name, port in tick.haptic.loop.wrench_sources.items():
         if name != "coupling":
@@ -225,5 +226,5 @@ def _read_distance(tick: ReplayedTick, tolerance_m: float) -> float:
     port = tick.haptic.loop.contacts
     contacts = port.Eval(port.get_system().GetMyContextFromRoot(tick.root))
     nearest = min(contacts.distance.tolist(), default=np.inf)
-    # Braking looks further.
+    # Braking searches further.
     return nearest if nearest < tolerance_m else np.inf

@@ -22,7 +22,7 @@ from drake_haptics.evaluation.accuracy.pareto import (
 from drake_haptics.evaluation.accuracy.setting import find_model_change
 from drake_haptics.evaluation.measuring.timing import TickTimes, name_machine
 
-# Before a label: the scene's own setting; a difference of model.
+# Marks before a label: the scene's own setting; a difference of model.
 SCENE_MARK = "*"
 MODEL_MARK = "†"
 # Smaller figures are round-off.
@@ -38,10 +38,10 @@ class Column:
     """A column of the price list.
 
     Attributes:
-        head: What is in it, short.
-        unit: Of its figures.
-        meaning: A sentence for people.
-        parts: What the figures of one cell are, where it has two.
+        head: Short heading.
+        unit: Unit of its figures.
+        meaning: Sentence that explains the figures.
+        parts: Names of the figures of one cell, if it has two.
     """
 
     head: str
@@ -53,15 +53,15 @@ class Column:
 COLUMNS = (
     Column("tick", "µs", "The whole tick through the Simulator, paced by the clock as"
            " for a device: median / 99th percentile.", "median / p99"),
-    Column("core", "µs", "Of that, what finds and answers the contacts inside the"
-           " compiled core: query, clusters, wrench; median."),
+    Column("core", "µs", "The part of the tick inside the compiled core: contact query,"
+           " clusters and wrench; median."),
     Column("force", "N", "Difference of the force on the tool from the reference's at"
            " the same poses: root mean square / largest.", "rms / largest"),
     Column("depth", "µm", "Largest difference of the deepest contact's distance from"
            " the exact one."),
     Column("jump", "°", "Largest turn of the force from one tick to the next, beyond"
            " the reference's own."),
-    Column("energy", "mJ", "What the running loop made of nothing."),
+    Column("energy", "mJ", "Energy that the running loop created."),
     Column("stable", "N/m", "Largest stable stiffness of the coupling in this"
            " contact."),
 )  # fmt: skip
@@ -84,7 +84,7 @@ def get_columns(study: AccuracyStudy) -> tuple[Column, ...]:
 
 
 def make_cells(row: Row, columns: tuple[Column, ...]) -> tuple[str, ...]:
-    """Returns the figures of a row; a dash each where there are none."""
+    """Returns the cells of a row; dashes if it was not measured."""
     if row.cost is None or row.errors is None:
         return ("–",) * len(columns)
     cells: tuple[str, ...] = (
@@ -144,7 +144,7 @@ def format_N(force_N: float) -> str:
 
 
 def _format(value: float, unit: str, digits: int) -> str:
-    """Returns a figure; a dash if there is none, ∞ of a loop that diverges."""
+    """Returns a figure; a dash for NaN, ∞ for a loop that diverges."""
     if not math.isfinite(value):
         return "–" if math.isnan(value) else "∞"
     return f"{value:.{digits}f}" if abs(value) >= _LEAST_SHOWN[unit] else "0"
@@ -190,8 +190,8 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
 
 
 def describe_knees(study: AccuracyStudy) -> list[str]:
-    """Describes each knee: its cost beside the scene, and what lies beyond it."""
-    # Over time inside the core, which noise disturbs least.
+    """Describes each knee: its cost beside the scene, and the costs on either side."""
+    # The front is over time inside the core, which noise disturbs least.
     front = find_front(study, get_native_us)
     scene = find_scene_row(study)
     sentences = []
@@ -210,7 +210,7 @@ def describe_knees(study: AccuracyStudy) -> list[str]:
 
 
 def describe_peers(study: AccuracyStudy) -> list[str]:
-    """Says what other libraries take and how far they differ."""
+    """Says how long other libraries take and how far their forces differ."""
     return [
         f"{peer.library}, {peer.method}: {format_us(peer.native.median_us)} µs, p99"
         f" {format_us(peer.native.p99_us)}, for"
@@ -221,7 +221,7 @@ def describe_peers(study: AccuracyStudy) -> list[str]:
 
 
 def describe_reference(study: AccuracyStudy) -> str:
-    """Says what errors are measured against, and on what motion."""
+    """Names the reference of the errors, and the motion they are measured on."""
     return (
         f"Errors are against {study.reference.label}, at the same poses:"
         f" {study.ticks} ticks of the scene's own motion, {study.contact_ticks} of"
@@ -230,7 +230,7 @@ def describe_reference(study: AccuracyStudy) -> str:
 
 
 def describe_models(study: AccuracyStudy) -> list[str]:
-    """Says which knobs are differences of model, with what differs."""
+    """Lists the knobs that are differences of model, with the difference."""
     knobs: dict[str, list[str]] = {}
     for row in study.rows:
         change = find_model_change(row.setting)
@@ -265,7 +265,7 @@ def describe_missing(study: AccuracyStudy) -> list[str]:
 
 
 def describe_machine(study: AccuracyStudy) -> str:
-    """Says what it was measured on, and how far to trust the times."""
+    """Names the machine, and says how far to trust the times."""
     machine = study.machine
     return (
         f"{name_machine(machine)}, drake_haptics {machine['drake_haptics']}."
@@ -275,7 +275,7 @@ def describe_machine(study: AccuracyStudy) -> str:
 
 
 def _advise(study: AccuracyStudy, scene: Row) -> str:
-    """Returns one sentence on what to set."""
+    """Returns one sentence of advice on a setting."""
     better = _find_better(study, scene)
     if better is not None:
         is_more = get_force_error_N(better) < get_force_error_N(scene)
@@ -300,7 +300,7 @@ def _advise(study: AccuracyStudy, scene: Row) -> str:
 
 
 def _is_faster(row: Row, scene: Row) -> bool:
-    """Tells whether what a row saves in the core is worth it in the scene's tick."""
+    """Tells whether a row's saving in the core is worth it in the scene's tick."""
     return get_native_us(scene) - get_native_us(row) > _WORTH * get_tick_us(scene)
 
 
@@ -328,7 +328,7 @@ def _describe_price(row: Row) -> str:
 
 
 def _describe_ratio(ratio: float) -> str:
-    """Returns a ratio as people say it."""
+    """Returns a ratio in words."""
     for value, words in ((0.5, "half"), (1.0 / 3.0, "a third of"), (1.0, "as much as")):
         if abs(ratio - value) < _ROUND * value:
             return words
@@ -336,6 +336,6 @@ def _describe_ratio(ratio: float) -> str:
 
 
 def _price_of_tenth(cheap: Row, dear: Row) -> str:
-    """Returns what a tenfold smaller error costs between two rows, µs."""
+    """Returns the time that a tenfold smaller error costs between two rows, µs."""
     decades = math.log10(get_force_error_N(cheap) / get_force_error_N(dear))
     return format_us((get_native_us(dear) - get_native_us(cheap)) / decades)

@@ -17,9 +17,9 @@ from drake_haptics.scene.settings import list_keys
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys
 
-# A key that begins so is set in every object of the environment.
+# A key that begins with this is set in every object of the environment.
 _EACH_OBJECT = "environment."
-# Beginning of a key: what differs.
+# Beginning of a key -> the difference of model.
 _MODELS = {
     "effects.": "what is felt besides contact",
     "contact.clustering": "how contacts that are near count together",
@@ -29,9 +29,9 @@ _MODELS = {
     "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
 }
 _EFFECTS = "effects."
-# What a device does and how long a tick may take: the loop, and not its contacts.
+# Keys that begin with this change the device or the tick: the loop, not its contacts.
 _LOOP = "device."
-# Stands for no change at all.
+# The word for no change at all.
 _NO_CHANGE = "scene"
 
 
@@ -40,13 +40,13 @@ class Setting:
     """One value of one knob, or a choice of several.
 
     Attributes:
-        knob: What is turned, in words of the scene file, such as
+        knob: Name of the knob in words of the scene file, such as
             `contact.tolerance_m`.
-        label: The value in words, with its unit, such as "1 mm".
+        label: Value in words, with its unit, such as "1 mm".
         changes: Keys of the scene with dots (`contact.depth`, `tool.max_triangles`;
             `environment.chord_error_m` is that of each object) and their values, which
-            are plain data, of a part such as `effects.gravity` its keys. None of them:
-            the scene as it is.
+            are plain data; that of a part such as `effects.gravity` is a mapping of its
+            keys. Empty for the scene as it is.
     """
 
     knob: str
@@ -58,8 +58,8 @@ class Setting:
 
         Raises:
             AttributeError: The scene has no such key.
-            TypeError: A mapping has a key that its part lacks, or stands where
-                no part may be left out.
+            TypeError: A mapping has a key that its part lacks, or is the value of a
+                part that may not be left out.
         """
         changed = copy.deepcopy(scene)
         for key, value in self.changes.items():
@@ -77,12 +77,12 @@ class Setting:
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> Setting:
-        """Returns what `to_dict` made plain data of."""
+        """Returns the setting from the data of `to_dict`."""
         return Setting(data["knob"], data["label"], dict(data["changes"]))
 
 
 def _assign(item: Any, key: str, value: Any) -> None:
-    """Sets an attribute of an attribute, which must exist."""
+    """Sets a nested attribute, which must exist."""
     *path, name = key.split(".")
     for step in path:
         item = getattr(item, step)
@@ -102,10 +102,10 @@ def _find_part(owner: type, name: str) -> Any:
 
 
 def find_model_change(setting: Setting) -> str:
-    """Returns what a setting changes of the model, empty if nothing.
+    """Returns a setting's difference of model in words, empty if it has none.
 
-    What differs then is what is felt, not how exactly it is computed: the "error" is
-    the difference between two models.
+    With such a difference another force is felt, not the same one computed less
+    exactly: the "error" is the difference between two models.
     """
     return next(
         (
@@ -118,10 +118,10 @@ def find_model_change(setting: Setting) -> str:
 
 
 def is_comparable(setting: Setting) -> bool:
-    """Tells whether a setting's figure is an error, which another one may beat.
+    """Tells whether a setting's figure is an error, which another setting may beat.
 
-    One of another model is exact in what it does, see `find_model_change`; in another
-    loop a tick is another share of a second, or leaves out what it has no time for.
+    A setting with another model is exact by that model, see `find_model_change`; in
+    another loop a tick is another share of a second, or leaves out work under load.
     """
     of_loop = any(key.startswith(_LOOP) for key in setting.changes)
     return not of_loop and not find_model_change(setting)
@@ -136,12 +136,12 @@ def parse_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Settin
     """Returns the setting that words such as `contact.tolerance_m=0.0005` make.
 
     Args:
-        words: `KEY=VALUE` each, all of one setting; VALUE is JSON, or else a text. Or
-            the single word `scene`, for the scene as it is.
+        words: Words `KEY=VALUE`, all of one setting; VALUE is JSON, or else a text. The
+            single word `scene` makes the scene as it is.
         known: Settings with labels; the first with the same changes is returned.
 
     Raises:
-        HapticsError: A word is no such thing, or a key is there twice.
+        HapticsError: A word does not have this form, or a key is given twice.
     """
     changes: dict[str, Any] = {}
     for word in words if list(words) != [_NO_CHANGE] else ():
@@ -171,7 +171,7 @@ def format_setting(setting: Setting) -> str:
 
 
 def apply_checked(setting: Setting, scene: Scene) -> Scene:
-    """Returns a copy of a scene with a setting, if that is a scene.
+    """Returns a copy of a scene with a setting, if the setting is valid.
 
     Raises:
         HapticsError: The scene has no such key, or a value is impossible.
@@ -184,7 +184,7 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
             raise HapticsError(f"{key} is not a key of a scene{hint}")
     try:
         changed = setting.apply(scene)
-    except AttributeError as error:  # Of a part that the scene leaves out.
+    except AttributeError as error:  # The scene leaves out the part of a key.
         keys = [key for key in setting.changes if key.startswith("effects.")]
         names = ", ".join(dict.fromkeys(key.rpartition(".")[0] for key in keys))
         raise HapticsError(
@@ -207,14 +207,14 @@ def _parse_value(text: str) -> Any:
 
 
 def _format_value(value: Any) -> str:
-    """Returns what `_parse_value` makes the same value of."""
+    """Returns a text from which `_parse_value` makes the same value."""
     if isinstance(value, str) and _parse_value(value) == value:
         return value
     return json.dumps(value)
 
 
 def _without_none(data: Any) -> Any:
-    """Returns data as a scene file would have them: what is not given is not there."""
+    """Returns data as a scene file has them, without the keys that are None."""
     if isinstance(data, dict):
         return {k: _without_none(v) for k, v in data.items() if v is not None}
     if isinstance(data, list):

@@ -1,4 +1,4 @@
-"""Measures what each setting of each knob of a scene costs and how wrong it is."""
+"""Measures the cost and the error of each setting of each knob of a scene."""
 
 from __future__ import annotations
 
@@ -54,29 +54,29 @@ from drake_haptics.evaluation.measuring.valgrind import require_valgrind
 from drake_haptics.scene.contact_law import require_penalty
 from drake_haptics.scene.schema import Scene
 
-# Under valgrind a tick takes fifty times as long; no more are needed, as counts do not
+# Under valgrind a tick takes fifty times as long; more are not needed, as counts do not
 # scatter.
 _COUNTED_TICKS = 500
 Task = dict[str, Any]
 Progress = Callable[[str, float], None]
 # Longest motion of a quick study, simulated.
 _QUICK_S = 1.0
-# Shares of all work that are done when something begins.
+# Shares of all work that are done when these steps begin.
 _TRUTH, _PRESS = 0.01, 0.03
-# Those of stages, from where to where.
+# Shares of all work that are done when a stage begins and ends.
 _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """Measures one thing of a setting; for a `run_study`.
+    """Measures one quantity of a setting, as a task of `run_study`.
 
     Attributes:
-        scene: As it is.
-        motion: Of its tool.
-        truth: On that motion.
-        place: Where its hand stops to press, for the stable stiffness; None where that
-            is not sought.
+        scene: Scene as it is.
+        motion: Motion of its tool.
+        truth: Truth on that motion.
+        place: Place where its hand stops to press, for the stable stiffness; None if
+            that is not sought.
     """
 
     scene: Scene
@@ -88,8 +88,8 @@ class Measurement:
         """Returns the result, or the reason for its failure.
 
         Args:
-            task: `what` ("errors", "instructions", "native" or "ticks") and the
-                `setting`; of times also the machine.
+            task: Task with `what` ("errors", "instructions", "native" or "ticks") and
+                the `setting`; for times also with the machine.
         """
         scene = Setting.from_dict(task["setting"]).apply(self.scene)
         measure = getattr(self, f"_measure_{task['what']}")
@@ -145,11 +145,11 @@ def make_task(what: str, setting: Setting, **more: Any) -> Task:
 def list_timing_tasks(
     settings: Sequence[Setting], machine: Mapping[str, str | int]
 ) -> list[Task]:
-    """Returns what to time of each setting.
+    """Returns the tasks that time each setting.
 
     Args:
         settings: Settings to time.
-        machine: Machine that times them; another one's times are others.
+        machine: Machine that times them. Times of another machine are not reused.
     """
     return [
         make_task(what, setting, machine=machine)
@@ -167,9 +167,9 @@ def make_row(
     """Returns the row of a setting.
 
     Args:
-        setting: Its setting.
-        measured: The setting that was measured and makes the same scene.
-        is_scene: Whether that is the scene as it is.
+        setting: Setting of the row.
+        measured: Setting that was measured and makes the same scene.
+        is_scene: Whether this is the scene as it is.
         done: All tasks of the study with their results.
     """
     own: dict[str, list[Mapping[str, Any]]] = {
@@ -200,7 +200,7 @@ def make_row(
 def _find_scene_times(
     done: Sequence[tuple[Task, Mapping[str, Any]]],
 ) -> TickTimes:
-    """Returns the times of the scene's own ticks, of all runs beside a setting."""
+    """Returns the median times of the scene's ticks over its runs beside settings."""
     runs = [result["scene"] for _, result in done if "scene" in result]
     return combine([TickTimes(**times) for times in runs])
 
@@ -234,13 +234,13 @@ def _read_pieces(results: Sequence[Mapping[str, Any]]) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class _Stage:
-    """Tasks that are done one after or beside the other.
+    """Tasks that are done in sequence or in parallel.
 
     Attributes:
-        what: Is done.
-        tasks: Of the `Measurement`.
-        executor: As `run_study` has it.
-        shares: Of all work, when they begin and end.
+        what: Description of the work.
+        tasks: Tasks of the `Measurement`.
+        executor: Executor of the tasks, see `run_study`.
+        shares: Shares of all work that are done when the stage begins and ends.
     """
 
     what: str
@@ -249,7 +249,7 @@ class _Stage:
     shares: tuple[float, float]
 
     def make_progress(self, report: Progress) -> Callable[[int, int], None]:
-        """Returns what reports how far the tasks are as a share of all work."""
+        """Returns a callback that reports the progress of the tasks and of all work."""
         begin, end = self.shares
 
         def progress(done: int, total: int) -> None:
@@ -279,24 +279,25 @@ def run_accuracy_study(
     that says why.
 
     Args:
-        scene: With a simulated device and hand.
-        name: For the report.
-        settings: To measure besides the scene as it is; those of all knobs where not
-            given.
-        executor: Computes the errors, see
+        scene: Scene with a simulated device and hand.
+        name: Name of the scene, for the report.
+        settings: Settings to measure besides the scene as it is. Defaults to those of
+            all knobs.
+        executor: Executor that computes the errors, see
             `drake_haptics.analysis.jobs.study.run_study`.
-        store: File that keeps each result; a call with the same scene and file goes on.
-        progress: Called with what is done now and the share of all, in [0, 1].
-        quick: One setting per knob and a short motion, without stable stiffnesses.
+        store: File that keeps each result; a call with the same scene and file resumes.
+        progress: Callback that takes the current work and the share done, in [0, 1].
+        quick: Whether to measure one setting per knob on a short motion, without stable
+            stiffnesses.
         count_instructions: Whether to count the core's instructions with valgrind, in
             the 500 ticks with the most contact, for some ten seconds each.
         stability: Whether to look for the largest stable stiffness of each setting.
 
     Raises:
         HapticsError: Instructions are asked for, but valgrind is not installed.
-        SceneError: The scene itself cannot be built, or is not by the penalty law.
-        drake_haptics.simulation.run.RunError: It diverges.
-        KeyboardInterrupt: At Ctrl-C; what is done is in the store.
+        SceneError: The scene itself cannot be built, or has no penalty law.
+        drake_haptics.simulation.run.RunError: The scene itself diverges.
+        KeyboardInterrupt: Ctrl-C is pressed; finished results are in the store.
     """
     report = progress or (lambda what, share: None)
     require_penalty(scene.contact, "errors and knobs are")
@@ -315,7 +316,7 @@ def run_accuracy_study(
     for stage in (
         _Stage("errors", [make_task("errors", s) for s in measured], executor, _ERRORS),
         _Stage("instructions", counts, executor, _COUNTS),
-        # Nothing else runs meanwhile.
+        # Nothing else runs while times are taken.
         _Stage("times", timing, SerialExecutor(), _TIMES),
     ):
         results = run_study(
@@ -341,7 +342,7 @@ def run_accuracy_study(
 
 
 def _find_measured(scene: Scene, settings: Sequence[Setting]) -> list[Setting]:
-    """Returns for each setting the first that makes the same scene of a scene."""
+    """Returns for each setting the first one that makes the same scene."""
     first: dict[str, Setting] = {}
     return [
         first.setdefault(repr(asdict(setting.apply(scene))), setting)
@@ -352,7 +353,7 @@ def _find_measured(scene: Scene, settings: Sequence[Setting]) -> list[Setting]:
 def _prepare(
     scene: Scene, report: Progress, quick: bool, stability: bool
 ) -> Measurement:
-    """Finds all that the settings of a scene are compared on."""
+    """Finds the motion, the truth and the place that settings are compared on."""
     report("recording the motion", 0.0)
     motion = record_motion(scene, choose_duration(scene, _QUICK_S) if quick else None)
     report("finding the truth", _TRUTH)
@@ -360,7 +361,7 @@ def _prepare(
     place = None
     if stability:
         report("looking for the firmest contact", _PRESS)
-        # As in a task: the same bits on any number of cores.
+        # One thread as in a task: the same bits on any number of cores.
         with one_blas_thread():
             place = find_pressed_place(scene)
     return Measurement(scene, motion, truth, place)

@@ -1,4 +1,4 @@
-"""Finds the truth on a recorded motion, and how far other answers are from it."""
+"""Finds the truth on a recorded motion, and the errors of other answers."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ _FIRM_SHARE = 0.1
 def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
     """Returns the signed distance of the deepest pair of convex pieces at each pose.
 
-    For each pair whose bounding spheres come near, all poses at which they do are
-    asked for the global depth: the least way out of all, proven. No pair knows of
-    another, and none of what a tracker holds or leaves out. Where tool and objects are
-    one convex piece each that is the exact penetration depth. Of a mesh in many pieces
-    the hulls have faces that the mesh has not: a contact never leaves by such a face,
-    and can so be some micrometers deeper than the pair.
+    Each pair is queried for the global depth, the least way out of all, which is
+    proven, at all poses at which its bounding spheres come near. The pairs do not
+    depend on each other, nor on what a tracker keeps or leaves out. If tool and objects
+    are one convex piece each, this is the exact penetration depth. Pieces of a larger
+    mesh have faces that are not on the mesh: a contact never leaves through such a
+    face, and so can be some micrometers deeper than the pair.
 
     Args:
-        haptic: Whose pieces, and objects where they stand.
+        haptic: Diagram with the pieces of tool and objects, and the objects' poses.
         X_WT: (n, 7) poses of the tool, m.
 
     Returns:
-        (n,) distances, m, negative in depth; infinite beyond the contact's tolerance.
+        (n,) distances, m, negative where a pair penetrates; infinite beyond the
+        contact's tolerance.
     """
     tolerance_m = haptic.scene.contact.tolerance_m
     R_WT = np.array([vector_to_pose(X).rotation().matrix() for X in X_WT])
@@ -60,7 +61,7 @@ def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
 
 
 def _find_near(p_WC: np.ndarray, centers_W: np.ndarray, reach: np.ndarray) -> list[int]:
-    """Returns the spheres that a moving point may come into."""
+    """Returns the indices of the spheres that a moving point may come into."""
     low, high = p_WC.min(axis=0), p_WC.max(axis=0)
     nearest = np.clip(centers_W, low, high)
     near = np.linalg.norm(centers_W - nearest, axis=1) < reach
@@ -90,7 +91,7 @@ class Truth:
         p_TTcm: (3,) the center of mass in the tool's frame, m.
         distance: (n,) exact distance of the deepest pair of pieces, m; infinite beyond
             the tolerance.
-        tolerance_m: Of the reference, m.
+        tolerance_m: Contact tolerance of the reference, m.
     """
 
     F_Tcm_W: np.ndarray
@@ -107,7 +108,7 @@ class Truth:
         """Returns first and end of the stretch of ticks with the most contact.
 
         Args:
-            num_ticks: Its length; all where there are no more.
+            num_ticks: Length of the stretch; all ticks if there are fewer.
         """
         num_ticks = min(num_ticks, len(self.distance))
         touched = np.concatenate([[0], np.cumsum(np.isfinite(self.distance))])
@@ -116,14 +117,14 @@ class Truth:
 
 
 def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
-    """Returns what the reference answers to a motion, and how deep the tool is.
+    """Returns the reference's wrench along a motion, and the exact depth of the tool.
 
     The wrench is the finest that the scene's own physics gives; the depth is found
-    without it, see `exact_distance`.
+    without it, see `calc_exact_distance`.
 
     Args:
-        reference: The scene with its finest exact setting.
-        motion: Of its tool.
+        reference: Scene with its finest exact setting.
+        motion: Motion of its tool.
     """
     haptic = build_without_scene_warnings(reference)
     p_TTcm = haptic.loop.haptic_tool.dynamics.p_TTcm
@@ -137,7 +138,7 @@ def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
 
 
 def shift_wrench(F_To_W: np.ndarray, X_WT: np.ndarray, p_TP: np.ndarray) -> np.ndarray:
-    """Returns wrenches on the tool at another of its points.
+    """Returns wrenches on the tool at another point of it.
 
     Args:
         F_To_W: (n, 6) wrenches [τ; f] at the tool's origin in the world.
@@ -169,14 +170,14 @@ def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Err
 def compare(
     F_Tcm_W: np.ndarray, distance: np.ndarray, tolerance_m: float, truth: Truth
 ) -> Errors:
-    """Compares the answers of anything with the truth.
+    """Compares wrenches and distances from any source with the truth.
 
     Args:
         F_Tcm_W: (n, 6) wrench [τ; f] at the truth's center of mass, N·m and N.
-        distance: (n,) of the deepest contact, m; infinite without a contact.
-        tolerance_m: How far contacts were looked for, m. Depths are compared up to
-            where both look.
-        truth: At the same n ticks.
+        distance: (n,) distance of the deepest contact, m; infinite without a contact.
+        tolerance_m: Distance up to which contacts were found, m. Depths are compared up
+            to the lesser of this and the truth's.
+        truth: Truth at the same n ticks.
     """
     error = np.linalg.norm((F_Tcm_W - truth.F_Tcm_W).reshape(-1, 2, 3), axis=2)
     rms, largest = np.sqrt((error**2).mean(axis=0)), error.max(axis=0)
@@ -196,12 +197,12 @@ def compare(
 
 
 def _calc_turns(force: np.ndarray, firm_N: float) -> np.ndarray:
-    """Returns (n - 1,) how far forces turn from a tick to the next, rad.
+    """Returns (n - 1,) angles by which forces turn from a tick to the next, rad.
 
-    Zero where one of the two is not firm.
+    An angle is zero if one of its two forces is not larger than `firm_N`.
     """
     before, after = force[:-1], force[1:]
-    # Sine and cosine together are exact for small turns as for large ones.
+    # Sine and cosine together are exact for small and large turns alike.
     sine = np.linalg.norm(np.cross(before, after), axis=1)
     turn = np.arctan2(sine, np.einsum("ni,ni->n", before, after))
     size = np.linalg.norm(force, axis=1)

@@ -46,7 +46,7 @@ from drake_haptics.report.page import Table
 from drake_haptics.report.plain_data import read_figures, to_plain_data
 
 PARTS = ("pairs", "python", "scenes", "loop")
-# Called with what is done next and the share of the part that is done.
+# Callback that takes the next work and the share of the part that is done.
 Progress = Callable[[str, float], None]
 _LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
@@ -90,9 +90,9 @@ class BenchFigures:
     """All figures of a run.
 
     Attributes:
-        machine: See `describe_machine`.
+        machine: Machine that took the times, see `describe_machine`.
         libraries: Name -> version of those that were measured on pairs or in loops.
-        missing: Name -> why it was not measured.
+        missing: Name -> reason why it was not measured.
         pairs: Figures of convex pairs, those of a pair together.
         python: Figures of single queries from Python.
         scenes: Figures of scenes, those of a scene together.
@@ -114,7 +114,7 @@ class BenchFigures:
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> BenchFigures:
-        """Returns the figures that `to_dict` made data of."""
+        """Returns the figures from the data of `to_dict`."""
         return read_figures(BenchFigures, data)
 
 
@@ -128,11 +128,11 @@ def run_benchmarks(
     """Measures this package and the libraries that are installed, in this thread.
 
     Args:
-        parts: Some of `PARTS`.
-        effort: How much is measured.
-        meshes: A folder of real meshes for the scenes, see `scene_makers`.
-        progress: Called before each step.
-        outside: Libraries that are measured besides, in every part.
+        parts: Parts to run, of `PARTS`.
+        effort: Extent of the measurement.
+        meshes: Folder of real meshes for the scenes, see `scene_makers`.
+        progress: Callback before each step, see `Progress`.
+        outside: Further libraries to measure, in every part.
 
     Raises:
         HapticsError: The folder has none of the meshes.
@@ -251,7 +251,7 @@ def make_tables(figures: BenchFigures) -> list[Table]:
 
 
 def machine_line(figures: BenchFigures) -> str:
-    """Returns what the figures were taken on, and with which libraries."""
+    """Names the machine and the libraries of the figures."""
     machine = figures.machine
     versions = {
         name.partition(",")[0]: version for name, version in figures.libraries.items()

@@ -1,4 +1,4 @@
-"""Measures a library from outside, of which one class in a file knows the calls."""
+"""Measures a library from outside, which one class in a file adapts."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def load_library(file: Path) -> type[OutsideLibrary]:
     """Returns the adapter in a Python file, which is run for it.
 
     Args:
-        file: Defines one subclass of `OutsideLibrary`.
+        file: File that defines one subclass of `OutsideLibrary`.
 
     Raises:
         HapticsError: The file cannot be imported, or does not define one such class.
@@ -107,7 +107,7 @@ def load_library(file: Path) -> type[OutsideLibrary]:
 
 
 def make_pair_library(library: type[OutsideLibrary]) -> PairLibrary:
-    """Returns an adapter as what convex pairs are measured with."""
+    """Returns an adapter as a library that is measured on convex pairs."""
     return PairLibrary(
         name=library.name,
         version=library.version,
@@ -139,8 +139,8 @@ class _OutsidePair:
 class PiecePairs:
     """The pairs of a tool's pieces with those of objects, in a library from outside.
 
-    Which are near is found by their boxes along the world's axes, in NumPy, and is
-    timed with the library's queries.
+    Near pairs are found by their boxes along the world's axes, in NumPy, which is timed
+    with the library's queries.
     """
 
     def __init__(
@@ -151,7 +151,7 @@ class PiecePairs:
         X_WO: NDArray[np.float64],
         tolerance_m: float,
     ):
-        """Poses the objects, (k, 4, 4), for good."""
+        """Sets the poses of the objects, (k, 4, 4), once."""
         self._library = library
         self._tolerance_m = tolerance_m
         self._A = [np.asarray(piece.vertices) for piece in tool.pieces]

@@ -1,4 +1,4 @@
-"""Defines what a library must do on a convex pair, and finds those installed."""
+"""Defines the queries of a library on a convex pair, and finds libraries."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PairAnswers:
     Attributes:
         distance: (n,) signed distances, m; negative is the penetration depth.
         nhat_BA_W: (n, 3) unit normals out of B into A, in the world.
-        seconds: (n,) what each answer cost inside the library, s.
+        seconds: (n,) time of each answer inside the library, s.
     """
 
     distance: np.ndarray
@@ -65,11 +65,12 @@ class PairLibrary:
 def ask_each(
     X_WA: np.ndarray, ask: Callable[[np.ndarray], tuple[float, np.ndarray, float]]
 ) -> PairAnswers:
-    """Returns the answers of a library that is asked for one pose after the other.
+    """Returns the answers of a library that is queried at one pose after the other.
 
     Args:
         X_WA: (n, 4, 4) poses of A.
-        ask: Returns distance, normal and time of an answer, see `PairAnswers`.
+        ask: Function of a pose that returns distance, normal and time of the answer,
+            see `PairAnswers`.
     """
     distance, normal, seconds = zip(*map(ask, X_WA), strict=True)
     return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
@@ -83,8 +84,7 @@ def normals_between(
     Args:
         p_WCa: (n, 3) witness points on A, m.
         p_WCb: (n, 3) witness points on B, m.
-        distance: (n,) signed distances, m. Where the points coincide the normal is
-            NaN.
+        distance: (n,) signed distances, m. If the points coincide the normal is NaN.
     """
     along = np.copysign(1.0, distance)[:, None] * (p_WCa - p_WCb)
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -94,10 +94,10 @@ def normals_between(
 def find_libraries() -> tuple[list[PairLibrary], dict[str, str]]:
     """Returns the libraries that can be measured here, this package's depths first.
 
-    Adapters in C++ are compiled when they are first asked for, in some ten seconds.
+    Adapters in C++ are compiled when they are first used, in some ten seconds.
 
     Returns:
-        The libraries; and of each other one, by its name, why not.
+        The libraries; and name -> reason of each one that cannot be measured.
     """
     found: list[PairLibrary] = []
     missing: dict[str, str] = {}

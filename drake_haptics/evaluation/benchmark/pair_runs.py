@@ -26,11 +26,11 @@ _STEADY_RAD = np.radians(1.0)
 
 @dataclass(frozen=True)
 class PairTruth:
-    """The best answer known of each frame.
+    """The best known answer of each frame.
 
     Attributes:
         distance: (n,) signed distances, m.
-        nhat_BA_W: (n, 3) unit normals that have them.
+        nhat_BA_W: (n, 3) unit normals whose support gaps these are.
     """
 
     distance: np.ndarray
@@ -44,14 +44,14 @@ def find_truth(
 
     Every unit vector n bounds the signed distance of two convex bodies from below by
     its support gap h(n) = min n·a − max n·b, and the largest gap is the distance,
-    apart as well as in depth. So gaps of the libraries' normals, found by going
-    through all vertices, judge all libraries alike: a library that finds a larger one
+    apart as well as in depth. Gaps of the libraries' normals, found by going through
+    all vertices, therefore judge all libraries alike: a library that finds a larger gap
     shows that the others are wrong.
 
     Args:
         pair: The bodies.
         X_WA: (n, 4, 4) poses of A; B is at the world's origin.
-        answers: One per library.
+        answers: Answers of each library.
     """
     normals = np.stack([a.nhat_BA_W for a in answers])
     gaps = np.stack([support_gaps(pair, X_WA, n) for n in normals])
@@ -81,8 +81,9 @@ class PairFigures:
         library: Name of the library.
         ours: Whether it is this package.
         apart: Times of the frames in which the bodies are apart.
-        in_depth: Times of the others.
-        max_relative_error: Largest of the distance, over the frames of at least 1 µm.
+        in_depth: Times of the frames in which they penetrate.
+        max_relative_error: Largest relative error of the distance, over the frames of
+            at least 1 µm.
         wrong_share: Share of the frames that are wrong by more than 0.1 %.
         exact_depth_share: Share of the frames in depth that have the global depth.
         max_jump_deg: Largest turn of the normal in a frame in which the exact one
@@ -118,9 +119,9 @@ def run_pair(
 
     Args:
         pair: The bodies.
-        libraries: What is measured.
-        presses: How many presses, see `make_presses`.
-        repeats: How often each press is run.
+        libraries: Libraries to measure.
+        presses: Number of presses, see `make_presses`.
+        repeats: Number of runs of each press.
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []

@@ -13,7 +13,7 @@ from drake_haptics.report.page import Table
 
 Column = Callable[[PairFigures], float]
 
-# What ratios are taken of: heading -> figure of a library on a pair, µs.
+# Heading -> figure of a library on a pair, µs, of which ratios are taken.
 COLUMNS: dict[str, Column] = {
     "apart median": lambda f: f.apart.median_us,
     "apart p99": lambda f: f.apart.p99_us,
@@ -29,7 +29,7 @@ def ratios_to_fastest(
     """Returns library name -> ratio on each pair.
 
     The fastest library of a pair is the one with the smallest figure in the column
-    among those that are not this package. Pairs without any have no ratio.
+    among those that are not this package. Pairs without such a library have no ratio.
 
     Args:
         figures: Figures of all libraries on all pairs, those of a pair together.
@@ -54,7 +54,7 @@ def geometric_mean(values: Sequence[float]) -> float:
 def growth(
     figures: Sequence[PairFigures], library: str, column: Column, small: int, large: int
 ) -> float:
-    """Returns by what factor a library's figure grows with the size of the bodies.
+    """Returns the factor by which a library's figure grows with the bodies' size.
 
     Args:
         figures: Figures of all pairs.
@@ -64,7 +64,7 @@ def growth(
         large: Vertices of the larger bodies.
 
     Returns:
-        The geometric mean over the kinds; NaN where a size was not run.
+        The geometric mean over the kinds; NaN if a size was not run.
     """
     of = {
         (f.kind, f.size): column(f)
@@ -107,7 +107,7 @@ def ratio_table(figures: Sequence[PairFigures]) -> Table:
 
 
 def error_table(figures: Sequence[PairFigures]) -> Table:
-    """Returns how right the libraries are."""
+    """Returns the errors of the libraries."""
 
     def row(library: str) -> tuple[str, ...]:
         own = [f for f in figures if f.library == library]
@@ -152,7 +152,7 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
     pairs = list(dict.fromkeys((f.kind, f.size) for f in figures))
     named = [f for f in _libraries(figures) if _of(figures, f)[0].outside]
     others = {f.library for f in figures if not f.ours}
-    # One that is alone is named once, in the heads.
+    # A single other library is named once, in the headings.
     alone = next(iter(others)) if len(others) == 1 else None
 
     def cells(kind: str, size: int, median: Column, p99: Column) -> list[str]:
@@ -193,7 +193,7 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
 
 
 def python_table(figures: Sequence[PythonFigures]) -> Table:
-    """Returns what single queries cost from Python."""
+    """Returns the times of single queries from Python."""
     mean = geometric_mean([f.ratio for f in figures])
     return Table(
         title="One pair query from Python",

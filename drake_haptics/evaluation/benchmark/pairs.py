@@ -54,8 +54,8 @@ def make_pair(kind: str, size: int) -> PairShape:
         size: Vertices of each body, one of `SIZES`.
 
     Raises:
-        KeyError: No such kind.
-        ValueError: No such size.
+        KeyError: There is no such kind.
+        ValueError: There is no such size.
     """
     A, B = {
         "ball": (_ball, _ball),
@@ -120,7 +120,7 @@ def make_presses(pair: PairShape, count: int) -> list[Press]:
 
     Args:
         pair: The bodies.
-        count: How many presses.
+        count: Number of presses.
     """
     rng = np.random.default_rng([pair.size, *pair.kind.encode()])
     return [_press(pair, rng) for _ in range(count)]
@@ -144,7 +144,7 @@ def _press(pair: PairShape, rng: np.random.Generator) -> Press:
 
 
 def _touching_offset(pair: PairShape, R_WA: np.ndarray, way_W: np.ndarray) -> float:
-    """Returns how far along `way_W` A's center is where the bodies just touch, m."""
+    """Returns the offset of A's center along `way_W` where the bodies just touch, m."""
     query = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
     X_WA = np.eye(4)
     X_WA[:3, :3] = R_WA

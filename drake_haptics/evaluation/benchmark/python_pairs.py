@@ -1,4 +1,4 @@
-"""Asks one pair query from Python: this package and coal's own binding."""
+"""Times one pair query from Python, in this package and in coal's own binding."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class PythonFigures:
     Attributes:
         kind: Kind of the pair.
         size: Vertices of each body.
-        ours_us: Median, this package, tracked, µs.
+        ours_us: Median of this package, tracked, µs.
         coal_us: Median of the faster of coal's starts, µs.
         outside_us: Medians of the libraries that were named for this run, µs.
     """
@@ -44,15 +44,15 @@ def run_python_pair(
     repeats: int,
     outside: Sequence[type[OutsideLibrary]] = (),
 ) -> PythonFigures:
-    """Returns what a single query costs from Python, on all frames of the presses.
+    """Returns the times of a single query from Python, on all frames of the presses.
 
     Both sides get a (4, 4) pose and give the distance, in turns on each press. Coal
     needs its own pose object, which is part of its query.
 
     Args:
         pair: The bodies.
-        presses: How many presses, see `make_presses`.
-        repeats: How often each press is run.
+        presses: Number of presses, see `make_presses`.
+        repeats: Number of runs of each press.
         outside: Libraries that were named for this run.
     """
     bodies = pair.A_vertices, pair.B_vertices
@@ -100,7 +100,7 @@ def _our_query(pair: PairShape) -> Callable[[np.ndarray], float]:
 
 
 class CoalQuery:
-    """A pair of hulls in coal's own binding, asked for one pose after the other.
+    """A pair of hulls in coal's own binding, queried at one pose after the other.
 
     Attributes:
         result: The result of coal's last query.
@@ -112,7 +112,7 @@ class CoalQuery:
         Args:
             A_vertices: (n, 3) vertices of the moving body, m.
             B_vertices: (m, 3) vertices of the resting body, m.
-            start: Where GJK starts, a name of `coal.GJKInitialGuess`.
+            start: Start of GJK, a name of `coal.GJKInitialGuess`.
 
         Raises:
             ImportError: coal is not installed.

@@ -40,7 +40,7 @@ class SceneQuery(Protocol):
     """A scene in a library, ready to be queried."""
 
     def run(self, X_WT: np.ndarray) -> SceneAnswers:
-        """Answers one pose of the tool, (n, 4, 4) in all, after the other."""
+        """Answers the poses of the tool, (n, 4, 4), one after the other."""
         ...
 
 
@@ -95,7 +95,7 @@ class CoalScene:
         self._native.coal_scene_setup(self._scene)
 
     def run(self, X_WT: np.ndarray) -> SceneAnswers:
-        """Answers one pose of the tool, (n, 4, 4) in all, after the other."""
+        """See `SceneQuery.run`."""
         n = len(X_WT)
         contacts = np.empty(n, dtype=np.int32)
         nearest, seconds = np.empty(n), np.empty(n)
@@ -133,7 +133,7 @@ class SceneFigures:
         tool_pieces: Convex pieces of the tool.
         object_pieces: Convex pieces of all objects.
         objects: Number of the objects.
-        near: Times of the ticks in which both libraries find a contact.
+        near: Times of the ticks in which all libraries find a contact.
         all_ticks: Times of all ticks.
         median_contacts: Pairs of pieces within the tolerance, over the near ticks.
         max_contacts: Most pairs of pieces within the tolerance at a tick.
@@ -166,7 +166,7 @@ def run_scene(
     Args:
         problem: The scene.
         queries: Library name -> the scene in it.
-        repeats: How often each motion is run.
+        repeats: Number of runs of each motion.
     """
     names = list(queries)
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}

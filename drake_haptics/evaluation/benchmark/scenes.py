@@ -38,8 +38,8 @@ class SceneProblem:
         tool: The tool in convex pieces.
         objects: The objects in convex pieces.
         X_WO: (k, 4, 4) poses of the objects, at rest.
-        motions: (n, 4, 4) poses of the tool a millisecond apart, several times.
-        tolerance_m: Contacts up to this distance are asked for.
+        motions: Motions of the tool, each (n, 4, 4) poses a millisecond apart.
+        tolerance_m: Distance up to which contacts are found, m.
     """
 
     name: str
@@ -68,7 +68,7 @@ class SceneAnswers:
     Attributes:
         num_contacts: (n,) pairs of pieces within the tolerance.
         nearest_m: (n,) smallest signed distance of any, at most the tolerance, m.
-        seconds: (n,) what each tick cost inside the library, s.
+        seconds: (n,) time of each tick inside the library, s.
     """
 
     num_contacts: np.ndarray
@@ -88,11 +88,11 @@ def make_touches(
     Args:
         tool: The body that moves; it touches with random places of its surface.
         target: The body that rests at the world's origin.
-        count: How many motions.
+        count: Number of motions.
         seed: Seed of the random numbers.
 
     Returns:
-        (n, 4, 4) poses of the tool each.
+        Motions, each (n, 4, 4) poses of the tool.
     """
     rng = np.random.default_rng(seed)
     search = SceneTracker(tool, [target], _SEARCH_STEP_M)
@@ -134,7 +134,7 @@ def _first_touch(
     way_W: np.ndarray,
     far_m: float,
 ) -> float:
-    """Returns how far out along the way the tool touches first, m, from afar."""
+    """Returns the offset along `way_W` where the tool, from afar, touches first, m."""
     X_WT = np.eye(4)
     X_WT[:3, :3] = R_WT
     along_m = far_m
@@ -157,8 +157,8 @@ def scene_makers(
     """Returns scene name -> a function that makes it.
 
     Args:
-        motions: How many motions each has.
-        meshes: A folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
+        motions: Number of motions of each scene.
+        meshes: Folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
             hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); those that it
             lacks are replaced by the package's own shapes, and the armadillo is left
             out without it.
@@ -187,7 +187,7 @@ def scene_makers(
 def _touch_model(
     name: str, tool: str, target: str, meshes: Path | None, motions: int
 ) -> SceneProblem:
-    """Returns a model that touches another one, real meshes where there are any."""
+    """Returns a model that touches another one, as real meshes if there are any."""
     pieces, others = (
         decompose(load_model(model, find_sources(model, meshes)[-1], meshes))
         for model in (tool, target)

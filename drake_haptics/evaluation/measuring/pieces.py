@@ -24,7 +24,7 @@ from pydrake.multibody.tree import RigidBody
 from drake_haptics._core import ConvexPolytope
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
-# Penetration at which the contact's damping is what was asked for: Hunt and Crossley's
+# Penetration at which the contact's damping has the given value: Hunt and Crossley's
 # grows with it, m.
 _TYPICAL_DEPTH_M = 5e-4
 # MuJoCo takes no flat mesh: a flat piece gets this thickness, on its inner side, m.
@@ -41,11 +41,11 @@ def register_pieces(
     """Adds each piece to a body, flat ones as they are.
 
     Args:
-        plant: Not yet finalized.
-        body: Of it.
+        plant: Plant that is not yet finalized.
+        body: Body of the plant.
         X_BP: Pose of the pieces in the body's frame.
         decomposition: The pieces.
-        surface: What they are made of.
+        surface: Contact material of the pieces.
     """
     for piece in decomposition.pieces:
         name = f"piece_{len(plant.GetCollisionGeometriesForBody(body))}"
@@ -54,7 +54,7 @@ def register_pieces(
 
 
 def to_drake_mesh(part: Decomposition) -> Mesh:
-    """Returns the mesh that was cut as Drake's, without a file."""
+    """Returns the mesh that was cut as a mesh of Drake, without a file."""
     lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in part.mesh.vertices]
     lines += [f"f {a} {b} {c}" for a, b, c in (part.mesh.triangles + 1).tolist()]
     file = MemoryFile("\n".join(lines) + "\n", ".obj", "mesh")
@@ -64,7 +64,7 @@ def to_drake_mesh(part: Decomposition) -> Mesh:
 def make_surface(
     stiffness_N_per_m: float, damping_Ns_per_m: float
 ) -> ProximityProperties:
-    """Returns a material of which two surfaces have these gains together."""
+    """Returns a material with these gains where two surfaces of it touch."""
     properties = ProximityProperties()
     AddContactMaterial(
         dissipation=damping_Ns_per_m / (stiffness_N_per_m * _TYPICAL_DEPTH_M),
@@ -78,12 +78,12 @@ def make_surface(
 
 @contextmanager
 def quiet_streams(*streams: int) -> Iterator[None]:
-    """Drops what is written to these streams of the process meanwhile.
+    """Drops what its block writes to these streams of the process.
 
-    So a library does not write on the terminal, where a progress bar is.
+    A library then does not write on the terminal, where a progress bar is.
 
     Args:
-        streams: 1 for standard output, 2 for standard error.
+        streams: Numbers of the streams: 1 for standard output, 2 for standard error.
     """
     sys.stderr.flush()
     kept = [os.dup(stream) for stream in streams]
@@ -94,7 +94,7 @@ def quiet_streams(*streams: int) -> Iterator[None]:
         yield
     finally:
         sys.stderr.flush()
-        # What C still holds back goes nowhere too.
+        # Text that C still buffers is dropped too.
         ctypes.CDLL(None).fflush(None)
         for stream, own in zip(streams, kept, strict=True):
             os.dup2(own, stream)

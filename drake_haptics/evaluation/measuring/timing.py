@@ -33,10 +33,10 @@ def clock_interval() -> float:
 
 
 class CallTimer:
-    """Times calls of one bound function, less what a trivial call of it costs.
+    """Times calls of one bound function, less the time of a trivial call.
 
-    What is taken off is the binding, the clock and the trivial work itself, which
-    favors the library a little.
+    This subtracts the binding, the clock and the trivial work itself, which favors the
+    library a little.
     """
 
     def __init__(self, function: Callable[..., Any], trivial: tuple[Any, ...]):
@@ -65,8 +65,8 @@ class TickTimes:
     Attributes:
         ticks: Number of the ticks.
         median_us: Median, µs.
-        p99_us: 99 of 100 took less, µs.
-        p99_9_us: 999 of 1000 took less, µs.
+        p99_us: 99th percentile, µs.
+        p99_9_us: 99.9th percentile, µs.
     """
 
     ticks: int
@@ -86,9 +86,9 @@ class TickTimes:
 
 
 def typical(seconds: np.ndarray) -> np.ndarray:
-    """Returns what each frame costs when nothing disturbs it.
+    """Returns the time of each frame when nothing disturbs it.
 
-    The mean of the middle half of its repeats: interruptions fall out, and the
+    It is the mean of the middle half of the repeats: interruptions fall out, and the
     clock's ticks, which are a tenth of a fast query here, average out.
 
     Args:
@@ -105,7 +105,7 @@ def typical(seconds: np.ndarray) -> np.ndarray:
 def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:
     """Yields each name `repeats` times, in turns that each begin at another name.
 
-    What disturbs the machine for a while then disturbs all alike.
+    A disturbance of the machine then affects all alike.
     """
     for repeat in range(repeats):
         for turn in range(len(names)):
@@ -124,7 +124,7 @@ def steady_memory() -> Iterator[None]:
 
 
 def describe_machine() -> dict[str, str | int]:
-    """Returns the processor, its cores, and the versions of what runs on it."""
+    """Returns the processor, its cores, the system, and versions of the software."""
     return {
         "processor": _processor(),
         "cores": os.cpu_count() or 0,
@@ -135,7 +135,7 @@ def describe_machine() -> dict[str, str | int]:
 
 
 def name_machine(machine: Mapping[str, str | int]) -> str:
-    """Returns what `describe_machine` returned in a few words."""
+    """Returns the machine of `describe_machine` in a few words."""
     return (
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']},"
         f" Python {machine['python']}"
@@ -143,7 +143,7 @@ def name_machine(machine: Mapping[str, str | int]) -> str:
 
 
 def _processor() -> str:
-    """Returns the processor's name where the system tells it."""
+    """Returns the processor's name, or "unknown" if the system does not tell it."""
     info = Path("/proc/cpuinfo")
     if info.exists():
         for line in info.read_text(encoding="utf-8").splitlines():

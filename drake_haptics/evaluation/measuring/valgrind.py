@@ -1,7 +1,7 @@
 """Counts the instructions of a part of a Python program.
 
-No other program disturbs such a count. What comes before and after the part is run but
-not counted, so that importing and building do not blur it.
+No other program disturbs such a count. The rest of the program is run but not counted,
+so that importing and building do not blur the count.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ def require_valgrind() -> None:
 def count_instructions(arguments: Sequence[str]) -> int:
     """Runs this Python with these arguments and counts what `counted` encloses.
 
-    Turning the count on and off is in it, some 6e5 instructions.
+    The count includes turning it on and off, some 6e5 instructions.
 
     Raises:
-        subprocess.CalledProcessError: the program failed.
+        subprocess.CalledProcessError: The program failed.
         RuntimeError: valgrind counted nothing.
     """
     said = run_callgrind(arguments, "/dev/null")
@@ -51,7 +51,7 @@ def count_instructions(arguments: Sequence[str]) -> int:
 
 
 def count_with_data(module: str, data: Any) -> int:
-    """Counts a module that is run with a file of data, which `read_data` returns.
+    """Counts a module that is run with a file of data, which it reads by `read_data`.
 
     Raises:
         subprocess.CalledProcessError: The program failed.
@@ -64,15 +64,15 @@ def count_with_data(module: str, data: Any) -> int:
 
 
 def read_data() -> Any:
-    """Returns what `count_with_data` has handed to this program."""
+    """Returns the data that `count_with_data` has handed to this program."""
     return pickle.loads(Path(sys.argv[1]).read_bytes())
 
 
 def run_callgrind(arguments: Sequence[str], profile: str) -> str:
-    """Runs this Python under callgrind, which writes a profile; returns what it said.
+    """Runs this Python under callgrind, which writes a profile; returns its messages.
 
     Raises:
-        subprocess.CalledProcessError: the program failed.
+        subprocess.CalledProcessError: The program failed.
     """
     command = [
         *("valgrind", "--tool=callgrind", "--instr-atstart=no"),
@@ -94,6 +94,6 @@ def counted() -> Iterator[None]:
 
 
 def _switch(state: str) -> None:
-    """Tells the valgrind that this program runs under."""
+    """Switches the count of the valgrind that this program runs under."""
     command = ["callgrind_control", "-i", state, str(os.getpid())]
     subprocess.run(command, capture_output=True, check=True)

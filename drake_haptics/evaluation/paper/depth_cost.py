@@ -1,4 +1,4 @@
-"""Measures what a penetration depth costs, over the triangles of the bodies (6.3).
+"""Measures the cost of a penetration depth over the triangles of the bodies (6.3).
 
 `python -m drake_haptics.evaluation.paper.depth_cost FILE` is the program whose
 instructions are counted: it moves a pair as FILE says.
@@ -37,14 +37,14 @@ def count_depths(
 ) -> dict[int, float] | None:
     """Counts the instructions of each query of a motion, by valgrind.
 
-    What a pair of points far from each other takes is taken off: switching the count
+    The count of a pair of points far from each other is subtracted: switching the count
     on and off, checking poses and reading the clock.
 
     Args:
-        motions: A pair and the poses X_WA (n, 4, 4) of A, by some number.
+        motions: Pairs and the poses X_WA (n, 4, 4) of A, by some number.
 
     Returns:
-        The mean per query, warm, by the same number; None without valgrind.
+        Mean per query, warm, by the same number; None without valgrind.
 
     Raises:
         subprocess.CalledProcessError: The program that is counted failed.
@@ -52,7 +52,7 @@ def count_depths(
     """
     if shutil.which("valgrind") is None:
         return None
-    # As many queries of each, so that what is taken off is the same.
+    # All have as many queries, so that the same count is subtracted from each.
     queries = min(len(X_WA) for _, X_WA in motions.values())
     apart = np.tile(np.eye(4), (2 * queries, 1, 1))
     apart[:, 0, 3] = 1.0
@@ -62,7 +62,7 @@ def count_depths(
         # There and back, so that each query is near the last one.
         there_and_back = np.concatenate([X_WA[:queries], X_WA[:queries][::-1]])
         jobs.append((pair.A_vertices, pair.B_vertices, there_and_back))
-    # Counts do not mind what runs beside them.
+    # Programs that run at the same time do not change the counts.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         base, *counts = pool.map(partial(count_with_data, __name__), jobs)
     return {
@@ -72,7 +72,7 @@ def count_depths(
 
 
 def main() -> None:
-    """Moves a pair as a file says, counted, after a pass that is not."""
+    """Moves a pair as a file says, and counts all passes but a first one."""
     A, B, X_WA = read_data()
     pair = ConvexPair(ConvexPolytope(A), ConvexPolytope(B))
     pair.query_trajectory(X_WA, np.eye(4))
@@ -87,14 +87,14 @@ if __name__ == "__main__":
 
 @dataclass(frozen=True)
 class DepthCost:
-    """A pair of convex bodies in penetration.
+    """The cost of a depth of a pair of convex bodies.
 
     Attributes:
-        triangles: Of each body.
-        queries: How many were timed, warm.
-        median_us: Of them, µs.
-        p99_us: Of them, µs.
-        instructions: Mean; None where they were not counted.
+        triangles: Triangles of each body.
+        queries: Number of queries that were timed, warm.
+        median_us: Median of their times, µs.
+        p99_us: 99th percentile of their times, µs.
+        instructions: Mean instructions of a query; None if they were not counted.
     """
 
     triangles: int
@@ -109,9 +109,10 @@ class DepthCosts:
     """The cost of one depth over the size of the bodies.
 
     Attributes:
-        rows: By triangles.
-        growth: Of the median time with the triangles.
-        instruction_growth: Of the instructions; None where they were not counted.
+        rows: Rows in order of triangles.
+        growth: Growth of the median time with the triangles.
+        instruction_growth: Growth of the instructions with the triangles; None if they
+            were not counted.
     """
 
     rows: tuple[DepthCost, ...]
@@ -134,10 +135,10 @@ def measure_depth_costs(
     """Measures the depth of pairs of round bodies, each query warm.
 
     Args:
-        presses: Of each pair: from outside to 20 % deep and out again, in some
+        presses: Presses of each pair: from outside to 20 % deep and out again, in some
             direction at a hand's speed.
-        with_instructions: Whether to count them, by valgrind, if it is there.
-        progress: Called with what is measured and the share done, in [0, 1].
+        with_instructions: Whether to count instructions, if valgrind is installed.
+        progress: Callback that takes the current work and the share done, in [0, 1].
     """
     rows, motions = [], {}
     for k, triangles in enumerate(TRIANGLES):
@@ -168,21 +169,22 @@ def make_balls(triangles: int) -> PairShape:
     """Returns two balls of that many triangles, the second one slightly smaller.
 
     Args:
-        triangles: An even number, at least 4: of n vertices on a sphere, spread as a
-            spiral spreads them, 2 n - 4 triangles have no fourth one beside.
+        triangles: Triangles of each ball, an even number of at least 4: the hull of n
+            vertices that a spiral spreads on a sphere has 2 n - 4 triangles, no two of
+            them in a plane.
     """
     count = triangles // 2 + 2
     height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
     angle = _GOLDEN_ANGLE * np.arange(count)
     across = np.sqrt(1.0 - height**2)
     unit = np.column_stack([across * np.cos(angle), across * np.sin(angle), height])
-    # So that no facet has more corners than three by symmetry.
+    # The axes are swapped, so that no facet has more than three corners by symmetry.
     B = unit[:, [1, 2, 0]]
     return PairShape("ball", count, RADIUS_M * unit, 0.9 * RADIUS_M * B)
 
 
 def _measure(pair: PairShape, X_WA: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the times of the queries that are deep, s, and their poses."""
+    """Returns the times of the queries in depth, s, and their poses."""
     query = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
     seconds = []
     for _ in range(_REPEATS):
@@ -190,6 +192,6 @@ def _measure(pair: PairShape, X_WA: np.ndarray) -> tuple[np.ndarray, np.ndarray]
         answers = query.query_trajectory(X_WA, np.eye(4))
         seconds.append(answers.seconds - clock_interval())
     deep = answers.distance < 0.0
-    # The first one still comes from outside.
+    # The first query in depth still starts from outside.
     deep[: int(deep.argmax()) + 1] = False
     return typical(np.array(seconds))[deep], X_WA[deep]

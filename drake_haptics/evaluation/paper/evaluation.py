@@ -1,4 +1,4 @@
-"""Makes the paper's evaluation again: all parts of it, or some."""
+"""Repeats the paper's evaluation, all parts of it or some."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Part = Literal["table1", "figure11", "figure12", "analysis"]
 PARTS: tuple[Part, ...] = get_args(Part)
 Progress = Callable[[str, float], None]
 
-# How long the parts take, about, for the progress that is shown.
+# Approximate relative durations of the parts, for the progress that is shown.
 _WEIGHTS = {"table1": 1.0, "figure11": 6.0, "figure12": 1.0, "analysis": 3.0}
 _FINE_DIVISIONS = 5
 
@@ -41,12 +41,12 @@ class Effort:
     """The extent of a measurement.
 
     Attributes:
-        profile_s: Of each path of Figure 11, s; all of it if not given.
-        pen_s: How long the pen takes for its pass, s.
-        presses: Of each pair whose depth is timed.
-        slide_ticks: Of each motion of a brush.
-        force_repeats: Of each force computation.
-        instructions: Whether to count those of a depth.
+        profile_s: Duration of each path of Figure 11, s; None for all of it.
+        pen_s: Duration of the pen's pass, s.
+        presses: Presses of each pair whose depth is timed.
+        slide_ticks: Ticks of each motion of a brush.
+        force_repeats: Repeats of each force computation.
+        instructions: Whether to count the instructions of a depth.
     """
 
     profile_s: float | None = None
@@ -72,8 +72,8 @@ class Run:
     """A run of a scenario of Figure 11.
 
     Attributes:
-        profile: Tick by tick.
-        figures: What it comes to.
+        profile: Profile of the run, tick by tick.
+        figures: Figures of the profile.
     """
 
     profile: Profile
@@ -100,11 +100,12 @@ class PaperEvaluation:
     """All figures; empty or None where a part was not asked for.
 
     Attributes:
-        machine: See `drake_haptics.evaluation.measuring.timing.describe_machine`.
+        machine: Machine that took the times, see
+            `drake_haptics.evaluation.measuring.timing.describe_machine`.
         table1: Rows of Table 1.
         figure11: Runs, those of the paper first.
         figure12: Passes of the pen over a coarse and a fine sphere.
-        analysis: Of section 6.3.
+        analysis: Figures of section 6.3.
         is_cut_short: Whether only the beginnings of Figure 11's paths were run.
     """
 
@@ -140,15 +141,15 @@ def evaluate_paper(
     meshes: Path | None = None,
     progress: Progress | None = None,
 ) -> PaperEvaluation:
-    """Makes the paper's evaluation again on this machine.
+    """Repeats the paper's evaluation on this machine.
 
     Args:
-        parts: Which.
-        effort: How much is measured; the usual if not given.
-        meshes: A folder of real meshes (torus_2000.obj, cup_500.obj, spoon_336.obj,
+        parts: Parts to measure. Defaults to all.
+        effort: Extent of the measurement. Defaults to `Effort()`.
+        meshes: Folder of real meshes (torus_2000.obj, cup_500.obj, spoon_336.obj,
             hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply), as many as
             there are.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Callback that takes the current work and the share done, in [0, 1].
 
     Raises:
         HapticsError: The folder has none of them.

@@ -1,4 +1,4 @@
-"""Plans how a hand explores something with a tool, and builds the haptic loop of it."""
+"""Plans a hand's exploration of objects with a tool, and builds its haptic loop."""
 
 from __future__ import annotations
 
@@ -22,24 +22,25 @@ from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 
-# A hand that looks for something with a tool.
+# Pace of a hand that explores with a tool.
 _SPEED_M_S = 0.10
 _TURN_RAD_S = 1.0
 _SHORTEST_S = 0.06
 _SEARCH_STEP_M = 0.002
 PERIOD_S = 1e-3
-# Of the device of the paper.
+# Limits of the paper's device.
 _MAX_FORCE_N, _MAX_TORQUE_NM = 8.5, 0.515
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where the tool comes in, and how far the hand moves on after first touch.
+    """A place at which the tool comes in, and the hand's aim beyond first touch.
 
     Attributes:
-        X_WT: Pose before it comes in, free of contact.
-        toward_W: (3,) unit, the direction in which it comes in.
-        press_m: How far beyond first touch the hand aims, m; negative to stay off.
+        X_WT: Pose of the tool before it comes in, free of contact.
+        toward_W: (3,) unit direction in which it comes in.
+        press_m: Distance beyond first touch at which the hand aims, m; negative to stay
+            off.
     """
 
     X_WT: RigidTransform
@@ -53,19 +54,19 @@ def plan_exploration(
     places: Sequence[Place],
     reach_m: float,
 ) -> HandPath:
-    """Plans a way of the hand through places, at a hand's pace.
+    """Plans a path of the hand through places, at a hand's pace.
 
     Args:
         tool: Pieces of the tool.
-        objects: At rest.
-        places: In their order, at least one.
-        reach_m: How far the tool may come in before it touches, m.
+        objects: Objects at rest.
+        places: Places in their order, at least one.
+        reach_m: Distance that the tool may come in before it touches, m.
 
     Returns:
-        X_WT over time, below about 0.15 m/s and 1.5 rad/s.
+        Path X_WT over time, below about 0.15 m/s and 1.5 rad/s.
 
     Raises:
-        ValueError: The tool begins in contact somewhere, or passes by.
+        ValueError: The tool begins in contact at a place, or passes by the objects.
     """
     search = SceneTracker(tool, [o.decomposition for o in objects], _SEARCH_STEP_M)
     for i, item in enumerate(objects):
@@ -100,16 +101,16 @@ def _press(search: SceneTracker, place: Place, reach_m: float) -> RigidTransform
 
 @dataclass(frozen=True)
 class Scenario:
-    """A tool, what it meets, and where a hand leads it.
+    """A tool, the objects it meets, and the path on which a hand leads it.
 
     Attributes:
-        name: For people.
-        figure: The paper's chart that is like it, such as "11-(a)"; empty if none is.
+        name: Name of the scenario.
+        figure: Chart of the paper that is like it, such as "11-(a)"; empty if none is.
         tool: Pieces of the tool, in its frame T.
-        mass_kg: Of the tool, kg.
-        p_TH: (3,) where the handle is in the tool's frame, m.
-        objects: What the tool meets, at rest.
-        path: Where the hand aims the tool at.
+        mass_kg: Mass of the tool, kg.
+        p_TH: (3,) position of the handle in the tool's frame, m.
+        objects: Objects that the tool meets, at rest.
+        path: Path of the poses at which the hand aims the tool.
         contact: Tolerance, clustering and gains.
     """
 
@@ -126,12 +127,12 @@ class Scenario:
 def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
     """Builds the whole loop of a scenario around a handle that its path leads.
 
-    The handle does not yield, as that of a firm hand does not much; the coupling
-    between it and the tool does.
+    The handle does not yield, as in a firm hand; the coupling between it and the tool
+    does.
 
     Args:
-        scenario: What to build.
-        seconds: Of the path that the handle knows, s.
+        scenario: Scenario to build.
+        seconds: Duration of the path that the handle follows, s.
     """
     X_TH = RigidTransform(scenario.p_TH)
     X_WH, V_WH = sample_handle(scenario.path, X_TH, seconds)
@@ -155,7 +156,7 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
         X_HT=X_TH.inverse(),
         X_WT=scenario.path.start,
         period_s=PERIOD_S,
-        in_one_call=False,  # query and force are told apart
+        in_one_call=False,  # query and force are timed apart
     )
     return HapticDiagram(
         diagram=builder.Build(),
@@ -174,12 +175,12 @@ def sample_handle(
     """Returns the handle's motion tick by tick while it leads the tool along a path.
 
     Args:
-        path: X_WT over time.
-        X_TH: Where the tool is held.
-        seconds: How long, s.
+        path: Path X_WT over time.
+        X_TH: Pose of the handle in the tool's frame.
+        seconds: Duration of the motion, s.
 
     Returns:
-        X_WH (n, 7) and V_WH (n, 6).
+        Poses X_WH (n, 7) and velocities V_WH (n, 6).
     """
     ticks = round(seconds / PERIOD_S) + 1
     X_WH, V_WH = np.empty((ticks, 7)), np.empty((ticks, 6))

@@ -12,9 +12,9 @@ class LineFit:
     """y = intercept + slope x, by least squares.
 
     Attributes:
-        slope: In y's unit per x's.
-        intercept: In y's unit.
-        r_squared: Share of y's variance that it explains, at most 1.
+        slope: Slope in y's unit per x's.
+        intercept: Intercept in y's unit.
+        r_squared: Share of y's variance that the line explains, at most 1.
     """
 
     slope: float
@@ -27,9 +27,9 @@ class PowerFit:
     """y = factor x ** exponent, by least squares of the logarithms.
 
     Attributes:
-        exponent: Below 1 y grows less than in proportion.
-        factor: In y's unit.
-        r_squared: Of the logarithms.
+        exponent: Exponent; below 1, y grows less than in proportion to x.
+        factor: Factor in y's unit.
+        r_squared: Share of the variance of y's logarithm that the line explains.
     """
 
     exponent: float
@@ -50,7 +50,7 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
     (slope, intercept), *_ = np.linalg.lstsq(design, y, rcond=None)
     left = ((y - slope * x - intercept) ** 2).sum()
     spread = ((y - y.mean()) ** 2).sum()
-    # A constant is explained whole.
+    # A constant y is explained fully.
     r_squared = 1.0 - left / spread if spread > 0.0 else 1.0
     return LineFit(float(slope), float(intercept), float(r_squared))
 

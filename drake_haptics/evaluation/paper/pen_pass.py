@@ -22,7 +22,7 @@ _SECONDS = 3.0
 _RATE_HZ = 1000.0
 _ARC_RAD = 2.0
 _TILT_RAD = 0.6
-# Off by 1.5 mm and 2.5 mm deep in turn.
+# The tip is 1.5 mm off and 2.5 mm deep in turn.
 _MIDDLE_M, _SWING_M = -0.0005, 0.0020
 
 
@@ -31,7 +31,7 @@ class ContactCurves:
     """One contact, tick by tick.
 
     Attributes:
-        distance_m: (n,) signed, negative where the bodies penetrate, m.
+        distance_m: (n,) signed distances, negative where the bodies penetrate, m.
         nhat_BA_W: (n, 3) unit normals out of the sphere into the pen.
         p_WC: (n, 3) means of both witness points, m.
     """
@@ -50,10 +50,10 @@ def calc_sphere_contact(
     center from the body less the radius, disjoint and penetrating alike.
 
     Args:
-        vertices: (v, 3) of the body, in its frame A, m.
-        triangles: (t, 3) of its surface.
+        vertices: (v, 3) vertices of the body, in its frame A, m.
+        triangles: (t, 3) triangles of its surface.
         X_WA: (n, 4, 4) poses of A.
-        radius_m: Of the sphere, m.
+        radius_m: Radius of the sphere, m.
     """
     corners = vertices[triangles]
     nearest_W = np.empty((len(X_WA), 3))
@@ -74,8 +74,8 @@ def calc_sphere_contact(
 def _find_nearest(corners: np.ndarray, p: np.ndarray) -> np.ndarray:
     """Returns the point of each triangle (t, 3, 3) that is nearest to p (3,).
 
-    It is p's foot on the plane where that is within, else the nearest of its feet on
-    the three sides.
+    It is p's projection on the plane if that is inside the triangle, else the nearest
+    of its projections on the three sides.
     """
     a, b, c = np.swapaxes(corners, 0, 1)
     normal = np.cross(b - a, c - a)
@@ -99,14 +99,14 @@ def _find_nearest(corners: np.ndarray, p: np.ndarray) -> np.ndarray:
 class Smoothness:
     """Steps from tick to tick beyond those of the truth, and errors.
 
-    A step is what a value changes by from one tick to the next. That of the truth is
-    what the motion explains; this is the difference from it.
+    A step is the change of a value from one tick to the next. The motion explains the
+    step of the truth; steps here are differences from it, except those of the truth.
 
     Attributes:
-        point_step_m: Largest of the contact point, m.
-        normal_step_deg: Largest of the normal, degrees.
-        distance_step_m: Largest of the distance, m.
-        crossing_step_m: Largest of the distance where it changes its sign, m.
+        point_step_m: Largest step of the contact point, m.
+        normal_step_deg: Largest step of the normal, degrees.
+        distance_step_m: Largest step of the distance, m.
+        crossing_step_m: Largest step of the distance where it changes its sign, m.
         normal_error_deg: Largest angle between the normal and the true one, degrees.
         distance_error_m: Largest error of the distance, m.
         true_normal_step_deg: Largest step of the true normal, degrees.
@@ -157,16 +157,17 @@ _Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]
 
 @dataclass(frozen=True)
 class PenPass:
-    """A pass, by each library and in truth.
+    """A pass of the pen: the curves of each library and the truth.
 
     Attributes:
-        time_s: (n,) of each tick, s.
-        triangles: Of the polyhedron that stands for the sphere.
-        corner_deg: Largest angle between neighboring faces of it.
-        truth: On a perfect sphere.
-        curves: By library; this package's under `OURS`.
-        smoothness: By library.
-        exact: Of the exact depth of the two polyhedra: what no query can better.
+        time_s: (n,) time of each tick, s.
+        triangles: Triangles of the polyhedron that stands for the sphere.
+        corner_deg: Largest angle between its neighboring faces, degrees.
+        truth: Curves on a perfect sphere.
+        curves: Curves by library; this package's under `OURS`.
+        smoothness: Smoothness by library.
+        exact: Smoothness of the exact depth of the two polyhedra, which no query can
+            better.
     """
 
     time_s: np.ndarray
@@ -195,7 +196,7 @@ def plan_pen_pass(seconds: float = _SECONDS) -> np.ndarray:
     while the pen leans to one side and the other.
 
     Args:
-        seconds: How long the pass takes, s.
+        seconds: Duration of the pass, s.
     """
     phase = np.linspace(0.0, 1.0, round(seconds * _RATE_HZ))
     X_WA = np.tile(np.eye(4), (len(phase), 1, 1))
@@ -219,8 +220,8 @@ def measure_pen_pass(
     """Follows the contact of the package's pen and a sphere along a pass.
 
     Args:
-        sphere: About the origin; the package's own if not given.
-        seconds: How long the pass takes, s.
+        sphere: Sphere about the origin. Defaults to the package's own.
+        seconds: Duration of the pass, s.
     """
     pen = make_pen()
     sphere = sphere or make_sphere()
@@ -267,7 +268,7 @@ def _follow_with_coal(pen: Surface, sphere: Surface, X_WA: np.ndarray) -> Contac
 
 
 def _find_libraries() -> dict[str, _Follow]:
-    """Returns what can follow a contact here, by name."""
+    """Returns library name -> function that follows a contact, of those installed."""
     found: dict[str, _Follow] = {OURS: _follow}
     if find_spec("coal") is not None:
         found["coal"] = _follow_with_coal

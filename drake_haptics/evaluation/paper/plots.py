@@ -37,11 +37,11 @@ _METHOD = {
 
 
 def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
-    """Draws on a figure of its own, which no window shows.
+    """Draws a profile on a figure of its own, which no window shows.
 
     Args:
-        profile: A run.
-        figures: What `sum_up` made of it.
+        profile: Profile of a run.
+        figures: Figures of it, from `sum_up`.
     """
     from matplotlib.figure import Figure
 
@@ -84,7 +84,7 @@ def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
 def _mark_intervals(
     axes: Axes, intervals: tuple[Interval, ...], time_s: np.ndarray
 ) -> None:
-    """Draws a line where an interval ends, and a ground where objects penetrate."""
+    """Draws lines between intervals, and shades those in which objects penetrate."""
     for interval in intervals:
         begin_s, end_s = time_s[interval.start], time_s[interval.stop - 1]
         if interval.start > 0:
@@ -113,7 +113,7 @@ def _write_letters(
 
 
 def draw_pen_pass(passed: PenPass) -> Figure:
-    """Draws on a figure of its own: a row for each library, a column for each value."""
+    """Draws a pass on a figure: a row for each library, a column for each value."""
     from matplotlib.figure import Figure
 
     rows = len(passed.curves)
@@ -171,7 +171,7 @@ def _draw_curve(
 
 
 def draw_analysis(analysis: Analysis) -> Figure:
-    """Draws on a figure of its own, which no window shows."""
+    """Draws the analysis on a figure of its own, which no window shows."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_ANALYSIS_INCH, layout="constrained")

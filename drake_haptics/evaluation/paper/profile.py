@@ -17,9 +17,9 @@ from drake_haptics.simulation.profiling import CallbackTimer
 from drake_haptics.simulation.run import run
 
 _WARM_UP_TICKS = 20
-# What is shorter flickers at the edge of contact.
+# Shorter intervals, in ticks, are flicker at the edge of contact.
 _SHORTEST_INTERVAL = 40
-# Fewer ticks of a kind have no median to speak of.
+# Fewer ticks of a kind give no reliable median.
 _LEAST_TICKS = 20
 # Fewer points, or nearly equal ones, do not determine a power.
 _LEAST_NUMBERS = 3
@@ -28,31 +28,31 @@ _LEAST_SPAN = 4.0
 
 @dataclass(frozen=True)
 class Profile:
-    """A run tick by tick: what one chart of the paper's Figure 11 shows.
+    """A run tick by tick, as one chart of the paper's Figure 11 shows it.
 
     Times are those of the systems' own callbacks, Python and core, as they run within
     the simulator; the whole tick is all that the computer does for it. The run is made
-    several times, the same each time, and a tick's time is the median of these: what
-    it takes, not what disturbed it.
+    several times, the same each time, and a tick's time is the median of these, without
+    the disturbances of single runs.
 
     Attributes:
-        name: Of the scenario.
-        figure: The paper's chart that is like it; empty if none is.
+        name: Name of the scenario.
+        figure: Chart of the paper that is like it; empty if none is.
         pieces: Convex pieces of the tool, and of all objects.
-        triangles: Of the tool, and of all objects.
-        objects: How many there are.
-        time_s: (n,) of each tick, s.
+        triangles: Triangles of the tool, and of all objects.
+        objects: Number of objects.
+        time_s: (n,) simulated time of each tick, s.
         query_s: (n,) time of the contact query, s.
         force_s: (n,) time of clustering and force computation, s.
         tick_s: (n,) time of the whole tick, s.
-        disturbed_s: (passes n,) time of the whole tick in each run, with all that
-            came between, s.
-        contacts: (n,) before clustering.
-        clusters: (n,) after it.
-        touched: (n,) objects with a contact.
-        touched_triangles: Of all objects that are ever touched together.
-        distance_m: (n,) of the nearest contact, m, negative where it penetrates;
-            infinite without a contact.
+        disturbed_s: (passes n,) time of the whole tick in each run, disturbances
+            included, s.
+        contacts: (n,) number of contacts before clustering.
+        clusters: (n,) number of clusters.
+        touched: (n,) number of objects with a contact.
+        touched_triangles: Triangles of all objects that are ever touched, together.
+        distance_m: (n,) distance of the nearest contact, m, negative where it
+            penetrates; infinite without a contact.
     """
 
     name: str
@@ -83,9 +83,9 @@ def measure_profile(
     """Runs a scenario at 1 kHz of simulated time, as fast as it can.
 
     Args:
-        scenario: What to run.
-        seconds: How much of its path, s; all of it if not given.
-        passes: How often; each is the same but for its times.
+        scenario: Scenario to run.
+        seconds: Duration of its path that is run, s. Defaults to all of it.
+        passes: Number of runs, which are the same but for their times.
     """
     duration_s = scenario.path.duration_s
     if seconds is not None:
@@ -120,7 +120,13 @@ def measure_profile(
 
 @dataclass(frozen=True)
 class _Pass:
-    """One run: (3, n) times of query, force and tick, s; (n, 4) notes; who was met."""
+    """One run.
+
+    Attributes:
+        times_s: (3, n) times of query, force and tick, s.
+        notes: (n, 4) contacts, clusters, objects touched and nearest distance, m.
+        ever: Indices of the objects that were ever touched.
+    """
 
     times_s: np.ndarray
     notes: np.ndarray
@@ -137,7 +143,7 @@ def _run_once(scenario: Scenario, duration_s: float) -> _Pass:
     notes: list[tuple[float, ...]] = []
 
     def note(context: Context) -> None:
-        # Both are cached by now, and what is read here is all that is not the loop's.
+        # Both are cached by now, so that a tick is longer by this reading alone.
         contacts = contacts_port.Eval(loop.contact_query.GetMyContextFromRoot(context))
         clusters = clusters_port.Eval(
             loop.contact_clustering.GetMyContextFromRoot(context)
@@ -148,7 +154,7 @@ def _run_once(scenario: Scenario, duration_s: float) -> _Pass:
         notes.append((len(contacts), len(clusters), len(touched), nearest_m))
         timer.end_tick(context)
 
-    # The garbage of earlier runs is not this one's.
+    # Garbage of earlier runs is not collected during this one.
     gc.collect()
     run(haptic, duration_s, on_tick=note)
     own_s, tick_s = timer.calc_times()
@@ -164,8 +170,8 @@ class Interval:
     """Ticks of one kind.
 
     Attributes:
-        start: Its first tick.
-        stop: The tick after its last.
+        start: First tick of the interval.
+        stop: Tick after its last.
         penetrating: Whether objects penetrate; else they are disjoint.
     """
 
@@ -191,7 +197,7 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
         shortest: Ticks of the shortest interval that is reported.
 
     Returns:
-        Intervals of alternating kind that cover all ticks; none of no ticks.
+        Intervals of alternating kind that cover all ticks; empty without ticks.
     """
     penetrating = np.asarray(penetrating, dtype=bool)
     if not len(penetrating):
@@ -223,11 +229,11 @@ class StateTimes:
     """Times of the ticks of one kind.
 
     Attributes:
-        ticks: How many.
-        query: The contact query.
-        force: Clustering and force.
-        tick: The whole tick.
-        contacts: Median number before clustering.
+        ticks: Number of the ticks.
+        query: Times of the contact query.
+        force: Times of clustering and force.
+        tick: Times of the whole tick.
+        contacts: Median number of contacts before clustering.
     """
 
     ticks: int
@@ -242,28 +248,29 @@ class ProfileFigures:
     """The figures of a run.
 
     Attributes:
-        name: Of the scenario.
-        figure: The paper's chart that is like it; empty if none is.
+        name: Name of the scenario.
+        figure: Chart of the paper that is like it; empty if none is.
         pieces: Convex pieces of the tool, and of all objects.
-        triangles: Of the tool, and of all objects.
-        objects: How many there are.
-        disjoint: Ticks in which nothing penetrates; None if there are none.
-        penetrating: Those in which something does; None if there are none.
-        all_ticks: Both.
-        disturbed: The whole tick with all that came between.
-        in_time: Share of those ticks that took less than 1 ms.
-        most_contacts: Before clustering.
-        most_clusters: After it.
-        most_touched: Objects in contact at once.
-        touched_triangles: Of all objects that are ever touched together.
+        triangles: Triangles of the tool, and of all objects.
+        objects: Number of objects.
+        disjoint: Times of ticks in which nothing penetrates; None without such ticks.
+        penetrating: Times of ticks in which something penetrates; None without such
+            ticks.
+        all_ticks: Times of all ticks.
+        disturbed: Times of the whole tick, disturbances included.
+        in_time: Share of the disturbed ticks that took less than 1 ms.
+        most_contacts: Most contacts at a tick, before clustering.
+        most_clusters: Most clusters at a tick.
+        most_touched: Most objects in contact at a tick.
+        touched_triangles: Triangles of all objects that are ever touched, together.
         deepest_m: Deepest penetration, m.
-        busiest: Ticks with at least half the most contacts.
+        busiest: Times of ticks with at least half the most contacts.
         depth_overhead: Median time of the query where something penetrates, over that
-            where nothing does, at the same number of contacts; None where no number
-            has ticks enough of both kinds.
-        contact_growth: Of the query's median time with the number of contacts; None
-            where fewer than three numbers, or nearly equal ones, have ticks enough.
-        intervals: Disjoint and penetrating in turn.
+            where nothing does, at the same number of contacts; None if no number has
+            enough ticks of both kinds.
+        contact_growth: Growth of the query's median time with the number of contacts;
+            None if fewer than three numbers, or nearly equal ones, have enough ticks.
+        intervals: Intervals, disjoint and penetrating in turn.
     """
 
     name: str
@@ -327,7 +334,7 @@ def sum_up(profile: Profile) -> ProfileFigures:
 
 
 def _times_of(profile: Profile, which: np.ndarray) -> StateTimes | None:
-    """Returns the times of some ticks; None of none."""
+    """Returns the times of some ticks; None without ticks."""
     if not which.any():
         return None
     query, force, tick = (

@@ -1,17 +1,17 @@
-"""Holds what the paper says, in its own figures (section 6)."""
+"""Holds the figures that the paper publishes (section 6)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-# Of the whole simulation of cup and spoon, "up to 30 contacts" (6.2).
+# Rate of the whole simulation of cup and spoon, "up to 30 contacts" (6.2).
 CUP_SPOON_RATE_HZ = 500.0
 CUP_SPOON_CONTACTS = 30
 # "Greater than KHz" with few contacts (6.3).
 FEW_CONTACTS_RATE_HZ = 1000.0
-# Of one penetration depth, "regardless of the complexity of objects" (6.3).
+# Time of one penetration depth, "regardless of the complexity of objects" (6.3).
 DEPTH_SECONDS = 1e-4
-# The auxiliary machine room, and what the tool touches of it (6.1).
+# The auxiliary machine room, and the part of it that the tool touches (6.1).
 ROOM_OBJECTS, ROOM_TRIANGLES = 897, 195_926
 TOUCHED_OBJECTS, TOUCHED_TRIANGLES = 17, 3_810
 MACHINE = "dual 1 GHz Pentium III, 2003"
@@ -22,9 +22,9 @@ class TableRow:
     """A row of the paper's Table 1.
 
     Attributes:
-        model: Its name there.
+        model: Name of the model.
         pieces: Convex pieces.
-        triangles: Of the mesh.
+        triangles: Triangles of the mesh.
     """
 
     model: str

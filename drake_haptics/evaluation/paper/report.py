@@ -46,8 +46,8 @@ class Picture:
 
     Attributes:
         key: Part of a file's name.
-        alt: What it shows, in words.
-        draw: Returns it as a figure.
+        alt: Description of the picture.
+        draw: Function that returns it as a figure.
     """
 
     key: str
@@ -60,9 +60,9 @@ class Block:
     """Statements and pictures that belong together in a section.
 
     Attributes:
-        title: A line; empty where the section's is enough.
-        statements: Where we agree and differ.
-        pictures: The curves.
+        title: Title of a line; empty if the section's is enough.
+        statements: Statements on where we agree and differ.
+        pictures: Pictures of the curves.
     """
 
     title: str
@@ -75,10 +75,10 @@ class Section:
     """A part of the evaluation.
 
     Attributes:
-        part: Which.
-        title: A line.
-        blocks: One or more.
-        tables: The figures.
+        part: Name of the part.
+        title: Title of a line.
+        blocks: One block or more.
+        tables: Tables of the figures.
     """
 
     part: Part
@@ -88,12 +88,12 @@ class Section:
 
     @property
     def statements(self) -> list[Statement]:
-        """All of them, of all blocks."""
+        """Statements of all blocks."""
         return [statement for block in self.blocks for statement in block.statements]
 
     @property
     def pictures(self) -> list[Picture]:
-        """All of them, of all blocks."""
+        """Pictures of all blocks."""
         return [picture for block in self.blocks for picture in block.pictures]
 
 
@@ -126,7 +126,7 @@ def make_sections(evaluation: PaperEvaluation) -> list[Section]:
 
 
 def describe_machine_line(evaluation: PaperEvaluation) -> str:
-    """Says what the figures were taken on, and how far they go."""
+    """Names the machine and the paper's, and says whether paths were cut short."""
     version = evaluation.machine["drake_haptics"]
     return (
         f"{name_machine(evaluation.machine)}, drake_haptics {version}; one thread."
@@ -190,11 +190,11 @@ def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:
     """Writes the page as one HTML file, and each picture beside it as PNG.
 
     Args:
-        evaluation: What `evaluate_paper` returned.
-        path: Of the HTML file; pictures are called after it.
+        evaluation: Evaluation from `evaluate_paper`.
+        path: Path of the HTML file; pictures are named after it.
 
     Returns:
-        The pictures' paths.
+        Paths of the pictures.
 
     Raises:
         OSError: A file cannot be written.

@@ -27,7 +27,7 @@ _SLIDE_REPEATS = 7
 _TEETH_ACROSS = (1, 2, 4, 6, 8, 12, 16)
 _WIDTH_M = 0.04
 _CLUSTER_M = 8e-3
-# With fewer contacts a call takes most of the time.
+# With fewer contacts the call from Python takes most of the time.
 FEWEST_FITTED = 16
 
 
@@ -36,9 +36,9 @@ class PairScaling:
     """Times of a query over the number of pairs that penetrate.
 
     Attributes:
-        pairs: How many penetrate.
-        median_us: Of the whole query, µs.
-        line: Through them.
+        pairs: Numbers of pairs that penetrate.
+        median_us: Median times of the whole query, µs.
+        line: Line through these times.
     """
 
     pairs: tuple[int, ...]
@@ -50,13 +50,13 @@ def measure_pair_scaling(ticks: int) -> PairScaling:
     """Slides brushes of 1 to 64 teeth over a plate, all teeth 0.5 mm deep.
 
     Args:
-        ticks: Of each motion.
+        ticks: Ticks of each motion.
     """
     plate = make_plate()
     motion = plan_slide(ticks)
     brushes = [make_brush(teeth) for teeth in NUM_TEETH]
     trackers = [SceneTracker(brush, [plate], _TOLERANCE_M) for brush in brushes]
-    # In turns, so that what disturbs the computer disturbs all.
+    # In turns, so that a disturbance of the computer affects all brushes.
     seconds = np.array(
         [
             [[tracker.query(X).query_seconds for X in motion] for tracker in trackers]
@@ -105,7 +105,7 @@ def make_plate() -> Decomposition:
 
 
 def plan_slide(ticks: int) -> np.ndarray:
-    """Returns X_WT (ticks, 4, 4): round in a circle of 10 mm, 0.5 mm deep."""
+    """Returns X_WT (ticks, 4, 4), once round a circle of 10 mm radius, 0.5 mm deep."""
     angle = np.linspace(0.0, 2.0 * np.pi, ticks)
     X_WT = np.tile(np.eye(4), (ticks, 1, 1))
     X_WT[:, 0, 3], X_WT[:, 1, 3] = 0.01 * np.cos(angle), 0.01 * np.sin(angle)
@@ -119,11 +119,11 @@ class ForceScaling:
 
     Attributes:
         method: "octree" (the paper's) or "shared".
-        contacts: Before clustering.
-        forces: That are computed: one for each cluster.
-        median_us: Of clustering and force, µs.
-        force_growth: Of the forces with the contacts.
-        time_growth: Of the time with the contacts, from `FEWEST_FITTED` on.
+        contacts: Numbers of contacts before clustering.
+        forces: Numbers of forces that are computed, one for each cluster.
+        median_us: Median times of clustering and force, µs.
+        force_growth: Growth of the forces with the contacts.
+        time_growth: Growth of the time with the contacts, from `FEWEST_FITTED` on.
     """
 
     method: str
@@ -138,7 +138,7 @@ def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
     """Presses brushes of 1 to 256 teeth, all 40 mm wide, into a plate.
 
     Args:
-        repeats: Of each computation.
+        repeats: Repeats of each computation.
 
     Returns:
         Figures of the paper's clusters (of 8 mm), and of shared stiffness.

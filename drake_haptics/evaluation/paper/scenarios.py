@@ -42,8 +42,8 @@ def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
     """Returns scenario name -> a function that makes it, those of Figure 11 first.
 
     Args:
-        meshes: A folder of real meshes; cup and spoon, the digestive system and the
-            armadillo are explored as well where it has them.
+        meshes: Folder of real meshes; cup and spoon, the digestive system and the
+            armadillo are explored as well if it has them.
     """
     makers: dict[str, Callable[[], Scenario]] = {
         "spoon in cup": partial(_make_cup_spoon, None, "spoon in cup", "11-(a)"),
@@ -74,7 +74,7 @@ def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
 
 
 def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> ContactParameters:
-    """Returns the paper's clustering; so soft that a few newtons penetrate."""
+    """Returns contact with the paper's clustering, which a few newtons penetrate."""
     return ContactParameters(
         tolerance_m=tolerance_m,
         stiffness_N_per_m=stiffness_N_per_m,
@@ -131,7 +131,7 @@ def _make_probe(
     places = []
     press = _press_again()
     for k, p_WQ in enumerate(_find_front(mesh)):
-        # Its end leans to -y out of the model and up, more and less in turn.
+        # Its end leans to -y out of the model and up, by more and less in turn.
         lean = np.deg2rad(55.0 - 25.0 * np.cos(0.25 * k))
         end_W = np.array([0.0, -np.cos(lean), np.sin(lean)])
         R_WT = RotationMatrix.MakeFromOneVector(end_W, axis_index=2)
@@ -197,7 +197,7 @@ def _move(mesh: Mesh, X_OM: RigidTransform) -> Mesh:
 
 
 def _press_again() -> Iterator[float]:
-    """Yields how far to press, m, for ever; begins off."""
+    """Yields distances to press, m, without end; the first is off the surface."""
     while True:
         for press_mm in _RHYTHM_MM:
             yield 1e-3 * press_mm

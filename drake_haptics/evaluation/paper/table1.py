@@ -13,19 +13,19 @@ from drake_haptics.geometry.decomposition.decompose import decompose
 
 @dataclass(frozen=True)
 class ModelFigures:
-    """A model like one of the paper's, and what it is cut into.
+    """A model like one of the paper's, and the pieces it is cut into.
 
     Attributes:
-        model: Its name in the paper.
-        paper_triangles: The paper's.
-        paper_pieces: The paper's.
-        source: "own shape", or the file; empty where there is no such model.
-        triangles: Ours.
-        pieces: Ours.
-        flat_pieces: Those of them without volume.
-        facets: Of all pieces; a flat piece counts as one.
-        virtual_facets: Those of them that are not on the mesh.
-        seconds: That finding the pieces took, s, now or when they were first found.
+        model: Name of the model in the paper.
+        paper_triangles: Triangles of the paper's model.
+        paper_pieces: Pieces of the paper's model.
+        source: "own shape", or the file; empty if there is no such model.
+        triangles: Triangles of our model.
+        pieces: Pieces of our model.
+        flat_pieces: Pieces without volume.
+        facets: Facets of all pieces; a flat piece counts as one.
+        virtual_facets: Facets that are not on the mesh.
+        seconds: Time of finding the pieces, s, now or when they were first found.
     """
 
     model: str
@@ -43,12 +43,12 @@ class ModelFigures:
 def measure_table1(
     meshes: Path | None, progress: Callable[[str, float], None]
 ) -> tuple[ModelFigures, ...]:
-    """Cuts each model of the paper's Table 1, or what there is like it.
+    """Cuts each model of the paper's Table 1, or the models that are like it.
 
     Args:
-        meshes: A folder of real meshes; a model found there has a row of its own
-            below that of the package's shape.
-        progress: Called with the model and the share done, in [0, 1].
+        meshes: Folder of real meshes; a model found there has a row of its own below
+            that of the package's shape.
+        progress: Callback that takes the current work and the share done, in [0, 1].
 
     Returns:
         Rows in the paper's order. A model that is neither a shape of the package nor

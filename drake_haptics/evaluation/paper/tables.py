@@ -73,7 +73,7 @@ def _format(times: TickTimes) -> str:
 
 
 def make_run_table(runs: Sequence[Run]) -> Table:
-    """Returns what the scenarios of Figure 11 are, and the rate that they hold."""
+    """Returns the sizes of the scenarios of Figure 11, and the rates that they hold."""
     header = (
         "scenario",
         "paper's",

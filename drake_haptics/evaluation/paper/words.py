@@ -23,7 +23,7 @@ from drake_haptics.evaluation.paper.scaling import FEWEST_FITTED, ForceScaling
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 
 Verdict = Literal["agrees", "better", "differs", "not measured"]
-# What statements of each verdict do, as the end of a sentence that counts them.
+# Verdict -> the end of a sentence that counts the statements of it.
 MEANING: dict[Verdict, str] = {
     "agrees": "agree with the paper",
     "better": "are better than the paper says",
@@ -32,10 +32,10 @@ MEANING: dict[Verdict, str] = {
 }
 # Powers that are "roughly proportional"; with a smaller one contacts cost less.
 _PROPORTIONAL = (0.7, 1.3)
-# A rate is better from this many times the paper's on: a newer processor alone makes
-# some of it. It is the rate with all that disturbs it, as the paper's own is.
+# A rate is better from this many times the paper's on, as some of the factor is due to
+# a newer processor. It is the rate with all disturbances, as the paper's own is.
 _BETTER_RATE = 5.0
-# So much more for depth is "a very small amount of overhead".
+# A ratio of times up to this is "a very small amount of overhead" for depth.
 _SMALL_OVERHEAD = 1.25
 # A power below this is "almost constant".
 _CONSTANT_EXPONENT = 0.2
@@ -48,7 +48,7 @@ _SAME = 1.02
 
 @dataclass(frozen=True)
 class Statement:
-    """A sentence and what it comes to.
+    """A sentence and its verdict.
 
     Attributes:
         verdict: One of `MEANING`.
@@ -60,7 +60,7 @@ class Statement:
 
 
 def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
-    """Returns what Table 1 comes to."""
+    """Returns the statements on Table 1."""
     found = [row for row in rows if row.source]
     fewer = [row for row in found if row.pieces <= row.paper_pieces]
     more = [row for row in found if row.pieces > row.paper_pieces]
@@ -90,12 +90,12 @@ def _list_rows(rows: Sequence[ModelFigures]) -> str:
 def judge_run(
     figures: ProfileFigures, *, is_cut_short: bool = False
 ) -> list[Statement]:
-    """Returns what a run of Figure 11 comes to.
+    """Returns the statements on a run of Figure 11.
 
     Args:
-        figures: Of the run.
-        is_cut_short: Whether only the beginning of the path was run: what happens at
-            most on the whole of it is not measured then.
+        figures: Figures of the run.
+        is_cut_short: Whether only the beginning of the path was run: largest values on
+            the whole path are not measured then.
     """
     at_most = []
     if figures.figure == "11-(c)":
@@ -193,7 +193,7 @@ def _judge_growth(figures: ProfileFigures) -> list[Statement]:
 
 
 def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
-    """Returns what the passes of the pen come to."""
+    """Returns the statements on the passes of the pen."""
     statements = []
     for passed in passes:
         ours = passed.smoothness[OURS]
@@ -246,7 +246,7 @@ def _times(theirs: Smoothness, ours: Smoothness) -> str:
 
 
 def judge_analysis(analysis: Analysis) -> list[Statement]:
-    """Returns what section 6.3 comes to."""
+    """Returns the statements on section 6.3."""
     depths, line = analysis.depths, analysis.pairs.line
     growth = depths.instruction_growth or depths.growth
     unit = "instructions" if depths.instruction_growth is not None else "times"
@@ -257,7 +257,7 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
             "agrees" if growth.exponent <= _CONSTANT_EXPONENT else "differs",
             f"Depth over triangles: from {rows[0].triangles} to"
             f" {rows[-1].triangles:,} the {unit} grow with the power"
-            # What rounds to nothing has no sign.
+            # A power that rounds to zero has no sign.
             f" {round(growth.exponent, 2) + 0.0:.2f} of the triangles; the paper:"
             " almost constant.",
         ),

@@ -68,7 +68,7 @@ class MachineRoom:
 
     Attributes:
         shapes: Surfaces by name, each in its own frame.
-        objects: In the order in which they were placed.
+        objects: Objects in the order in which they were placed.
     """
 
     shapes: dict[str, Surface]
@@ -95,9 +95,9 @@ class RoomBuilder:
 
         Args:
             make: A generator named make_<kind>.
-            sizes: Its arguments: lengths, m, rounded to 1 mm, so that shapes are
-                shared; and counts, which are ints.
-            X_WO: The pose.
+            sizes: Arguments of the generator: lengths, m, rounded to 1 mm, so that
+                shapes are shared; and counts, which are ints.
+            X_WO: (4, 4) pose of the shape's frame in the room.
         """
         kind = make.__name__.removeprefix("make_")
         sizes = [s if isinstance(s, int) else round(s, 3) for s in sizes]
@@ -121,9 +121,9 @@ def pose(
     """Returns X_WO (4, 4) from an origin, m, and the directions of two axes.
 
     Args:
-        origin: (3,) m.
-        z: (3,) unit.
-        x: (3,) unit, normal to z.
+        origin: (3,) origin, m.
+        z: (3,) unit direction of the z axis.
+        x: (3,) unit direction of the x axis, normal to z.
     """
     X = np.eye(4)
     X[:3, 2], X[:3, 0] = z, x
@@ -243,9 +243,9 @@ def add_pipe_run(
 
     Args:
         room: The room to add to.
-        corners: (k, 3) of the axis, m; consecutive lines at right angles.
+        corners: (k, 3) corners of the axis, m; consecutive lines are at right angles.
         radius: Radius of the pipe, m.
-        stem: (3,) unit, direction of the valves' stems, normal to the valves' pipes.
+        stem: (3,) unit direction of the valves' stems, normal to the valves' pipes.
         valves: Indices of the straight parts that have a valve in their middle.
     """
     points = np.asarray(corners, dtype=float)
@@ -350,7 +350,7 @@ def make_tube(radius: float, bottom: float, top: float, reach: float) -> Surface
 
 
 def add_instrument_panel(room: RoomBuilder) -> None:
-    """Adds a panel with tubes before it, between two struts, which are as proud."""
+    """Adds a panel with tubes before it, between two struts that end in their plane."""
     low, high = _TUBE_Z_M
     half_row = _SPACING_M * (NUM_TUBES + 1) / 2
     behind = _FRONT_Y_M + 0.1
@@ -367,11 +367,11 @@ def add_instrument_panel(room: RoomBuilder) -> None:
 
 
 def wrench_path(num_poses: int) -> np.ndarray:
-    """Returns a way of the wrench across the tubes and struts.
+    """Returns a path of the wrench across the tubes and struts.
 
     It comes near, presses 0.2 mm into the 17 of them, slides up along the tubes by
-    150 mm while it rocks a little, and leaves. In 3 s nothing moves faster than
-    0.15 m/s.
+    150 mm while it rocks a little, and leaves. If it takes 3 s, nothing moves faster
+    than 0.15 m/s.
 
     Args:
         num_poses: Number of poses, at equal times.

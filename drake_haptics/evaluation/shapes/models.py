@@ -17,12 +17,12 @@ OWN = "own shape"
 
 @dataclass(frozen=True)
 class ModelSource:
-    """Where a model comes from.
+    """The source of a model.
 
     Attributes:
-        file: Its name in a folder of real meshes.
+        file: Name of its file in a folder of real meshes.
         scale: Meters per unit of the file.
-        make: The package's own shape like it; None if there is none.
+        make: Function that makes the package's shape like it; None if there is none.
     """
 
     file: str
@@ -43,11 +43,11 @@ MODELS = {
 
 
 def find_sources(model: str, meshes: Path | None) -> list[str]:
-    """Returns where a model comes from: `OWN`, or the name of a file, or both.
+    """Returns the sources of a model: `OWN`, or the name of a file, or both.
 
     Args:
         model: A key of `MODELS`.
-        meshes: A folder of real meshes.
+        meshes: Folder of real meshes.
     """
     source = MODELS[model]
     found = [OWN] if source.make is not None else []
@@ -60,7 +60,7 @@ def check_folder(meshes: Path | None) -> None:
     """Checks that a folder of real meshes has at least one.
 
     Raises:
-        HapticsError: It has none of them.
+        HapticsError: The folder has none of them.
     """
     files = [source.file for source in MODELS.values()]
     if meshes is not None and not any((meshes / file).is_file() for file in files):
@@ -72,8 +72,8 @@ def load_model(model: str, source: str, meshes: Path | None) -> Mesh:
 
     Args:
         model: A key of `MODELS`.
-        source: What `find_sources` named.
-        meshes: As there.
+        source: A source from `find_sources`.
+        meshes: Folder of real meshes.
 
     Raises:
         drake_haptics.geometry.mesh.mesh.MeshError: The file cannot be treated.

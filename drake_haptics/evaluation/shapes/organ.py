@@ -15,7 +15,7 @@ from drake_haptics.evaluation.shapes.surface import (
     rounded_path,
 )
 
-# Corners of the axes, (x, y, z) in m, before all is bent a little.
+# Corners of the axes, (x, y, z) in m, before the whole is bent a little.
 _COLON = (
     (-0.11, 0.0, -0.09),
     (-0.11, 0.0, 0.135),
@@ -91,13 +91,13 @@ def _appendix_radius(s: float, length: float, angle: np.ndarray) -> np.ndarray:
 
 
 def _dome(from_end: float, radius: float) -> float:
-    """Returns the share of the radius so far from an end, where it falls to nothing."""
+    """Returns the share of the radius at a distance from an end, where it is 0."""
     share = min(from_end / radius, 1.0)
     return float(np.sqrt(share * (2 - share)))
 
 
 def _bend(points: np.ndarray) -> np.ndarray:
-    """Bends space, so that nothing is straight or flat; one to one, so safely."""
+    """Bends space one to one: nothing stays straight or flat, or meets itself."""
     x, y, z = np.moveaxis(np.asarray(points), -1, 0)
     bent = [
         x + 0.009 * np.sin(22 * z + 30 * y),
@@ -141,7 +141,7 @@ def _add_branch(
         rim: The rim of the opening.
         path: The axis of the tube.
         normal: (3,) direction in which the rim begins, seen from the axis.
-        radius: Radius of the tube, m.
+        radius: Function that returns radii of the tube, m, as `_bowel_radius` does.
     """
     for ring in _add_rings(builder, path, normal, len(rim), radius):
         builder.add_band(rim, ring)

@@ -1,4 +1,4 @@
-"""Makes the parts of a machine room: pipes, what is bolted to them, and equipment.
+"""Makes the parts of a machine room: pipes, their fittings, and equipment.
 
 Pipes and fittings run along +z from the origin; equipment stands on z = 0.
 """
@@ -278,7 +278,7 @@ def make_ladder(height: float, width: float, rungs: int, radius: float) -> Surfa
     left = _add_rail(builder, 0.0, 1, radius, sorted(levels))
     right = _add_rail(builder, width, -1, radius, sorted(levels))
     for near, far in zip(left, right, strict=True):
-        # Seen from the left the right loop runs backwards, and begins two on.
+        # Seen from the left the right loop runs backwards, and begins two later.
         builder.add_band(near, [far[2 - k] for k in range(len(far))])
     return builder.build()
 

@@ -15,7 +15,7 @@ from drake_haptics.evaluation.shapes.surface import (
 _PEG_RADIUS_M = 0.012
 _PEG_SIDES = 24
 SOCKET_PLAY_M = 1e-4
-"""Between the peg and the wall of the socket where they are coaxial, at least, m."""
+"""Least play between the peg and the wall of the socket if they are coaxial, m."""
 _CUP_SECTORS = 16
 # Outer wall, (radius, height) in m from the table to the rim. Rows 1-3 and 5-7 bound
 # the two openings where the handle leaves.
@@ -134,7 +134,7 @@ def _add_handle(builder: SurfaceBuilder, rings: list[list[int]]) -> None:
     """Sweeps a hexagonal section from the upper opening to the lower one."""
     low, middle, high = (rings[_UPPER_OPENING[0] + k] for k in range(3))
     near = [low[0], low[1], middle[1], high[1], high[0], middle[0]]
-    # Along the way the section turns half round about y: what was up is then down.
+    # Along the way the section turns half round about y, so that its top ends below.
     low, middle, high = (rings[_LOWER_OPENING[0] + k] for k in range(3))
     last = [high[0], high[1], middle[1], low[1], low[0], middle[0]]
     for k in range(1, _HANDLE_SECTIONS):
@@ -212,11 +212,11 @@ def make_pen() -> Surface:
 def make_sphere(divisions: int = 3) -> Surface:
     """Returns a sphere of radius 40 mm about the origin, as 1280 even triangles.
 
-    An icosahedron whose triangles are divided three times: no poles, so the contact
-    does not change its character along a path.
+    It is an icosahedron whose triangles are divided three times. It has no poles, so
+    that contact is of one kind along a path.
 
     Args:
-        divisions: How often; each makes four triangles of one.
+        divisions: Number of divisions, each of which makes four triangles of one.
     """
     unit, triangles = divide_icosahedron(divisions)
     return Surface(np.round(0.040 * unit, 9), triangles)
@@ -226,7 +226,8 @@ def divide_icosahedron(divisions: int) -> tuple[np.ndarray, np.ndarray]:
     """Returns even unit vectors and the triangles between them.
 
     Args:
-        divisions: How often each triangle of an icosahedron is divided into four.
+        divisions: Number of times that each triangle of an icosahedron is divided into
+            four.
 
     Returns:
         (n, 3) unit vectors and (m, 3) int32 indices, wound outward.

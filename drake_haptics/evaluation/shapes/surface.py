@@ -79,8 +79,8 @@ class SurfaceBuilder:
         """Joins two rings of equal length by a band of quads.
 
         Args:
-            near: The ring the surface comes from.
-            far: The ring it advances to.
+            near: The ring that the surface comes from.
+            far: The ring that it advances to.
             holes: Columns i whose quad (near[i], near[i+1], ...) is left open.
 
         Raises:
@@ -106,7 +106,7 @@ class SurfaceBuilder:
             self._triangles.append((b, a, apex) if at_start else (a, b, apex))
 
     def build(self) -> Surface:
-        """Returns the surface made so far, without the vertices no triangle uses."""
+        """Returns the surface made so far, without vertices that no triangle uses."""
         used, triangles = np.unique(self._triangles, return_inverse=True)
         return Surface(
             vertices=np.array(self._vertices)[used],
@@ -204,8 +204,8 @@ class SmoothPath:
         """Returns (n, 3, 3) frames that turn about the path no more than they must.
 
         Args:
-            normal: (3,) the first frame's x axis lies in the plane of this vector and
-                the first tangent, and on the same side.
+            normal: (3,) direction of the first frame's x axis, which lies in the plane
+                of this vector and the first tangent, and on the same side.
 
         Returns:
             Rotations whose columns are x, y and the tangent.

@@ -12,13 +12,13 @@ from drake_haptics.evaluation.shapes.surface import (
 )
 
 THREAD_PITCH_M = 0.008
-"""Way along the axis in a turn, m; the thread is right-handed."""
+"""Advance along the axis in a turn, m; the thread is right-handed."""
 _SIDES = 24
 _BOLT_ROOT_M, _BOLT_CREST_M = 0.008, 0.0105
 _BOLT_TURNS = 3
 _RADIUS_M, _HEAD_M = 0.026, 0.008
-# Between the teeth of the nut and the root of the bolt. As the teeth are cut from 24
-# sides, it leaves the nut 0.1 mm of play.
+# Distance between the teeth of the nut and the root of the bolt. As the teeth are cut
+# from 24 sides, it leaves the nut 0.1 mm of play.
 _RADIAL_PLAY_M = 3.9e-4
 _BORE_M = 0.0125
 # Sections of the nut, of 24 in a turn, and those that have a tooth.
@@ -49,19 +49,18 @@ def make_bolt() -> Surface:
 def make_nut() -> Surface:
     """Returns a round nut for the bolt, its lower face at z = 0.
 
-    52 mm in diameter, 9.3 mm high, with a bore of 25 mm. Of its thread there are three
-    teeth, a third of a turn from one to the next: they touch as a whole thread would,
-    and are few pieces.
+    52 mm in diameter, 9.3 mm high, with a bore of 25 mm. Its thread is three teeth, a
+    third of a turn apart: they touch as a whole thread would, and are few pieces.
     """
     builder = SurfaceBuilder()
     bore, tooth = np.full(_SIDES, _BORE_M), _calc_thread(_RADIAL_PLAY_M)
-    # Where the bolt has its crest is the bore.
+    # The nut has its bore where the bolt has its crest.
     tooth = np.where(_calc_thread(0.0) > _BOLT_ROOT_M, _BORE_M, tooth)
     height = _NUT_SECTIONS * THREAD_PITCH_M / _SIDES
     low = builder.add_ring(circle(_RADIUS_M, 0.0, _SIDES))
     high = builder.add_ring(circle(_RADIUS_M, height, _SIDES))
     builder.add_band(low, high)
-    # The last section begins where the thread has turned to.
+    # The last section begins at the angle to which the thread has turned.
     turned = _NUT_SECTIONS % _SIDES
     near = [*high[turned:], *high[:turned]]
     for k in reversed(range(_NUT_SECTIONS + 1)):

@@ -1,4 +1,4 @@
-"""Defines what a library is asked and answers, and applies the scene's law of force."""
+"""Defines a library's problem and answers, and applies the scene's force law."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
 
-# As often each tick is timed; what it took is the middle of them.
+# Number of passes that time each tick; its time is that of the middle of them.
 PASSES = 3
 
 
@@ -25,12 +25,12 @@ class PeerProblem:
     """A tool that moves as recorded among objects at rest; without effects.
 
     Attributes:
-        scene: Its gains.
-        motion: Of the tool.
-        tool: In convex pieces.
-        objects: In convex pieces.
-        part: What this package's core is asked for the same; with the law of force.
-        f_W: (n, 3) the reference's force, for gains that the scene does not have, N.
+        scene: Scene with the gains.
+        motion: Motion of the tool.
+        tool: Tool in convex pieces.
+        objects: Objects in convex pieces.
+        part: Queries to this package's core for the same problem, with the force law.
+        f_W: (n, 3) force of the reference, N, to fit gains that the scene lacks.
     """
 
     scene: Scene
@@ -42,7 +42,7 @@ class PeerProblem:
 
     @property
     def tolerance_m(self) -> float:
-        """Pieces nearer than this push each other apart, m."""
+        """Distance below which pieces push each other apart, m."""
         return self.scene.contact.tolerance_m
 
 
@@ -52,10 +52,10 @@ class PeerAnswers:
 
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] on the tool at its origin in the world, N·m, N.
-        distance: (n,) of the deepest contact, m; infinite without a contact.
-        tolerance_m: How far it looked for contacts, m.
+        distance: (n,) distance of the deepest contact, m; infinite without a contact.
+        tolerance_m: Distance up to which the library found contacts, m.
         seconds: (n,) time inside the library, s.
-        remark: What the method was given besides, empty otherwise.
+        remark: Further parameters of the method, in words. Defaults to empty.
     """
 
     F_To_W: np.ndarray
@@ -76,12 +76,12 @@ class Answer(Protocol):
 def make_peer_problem(
     haptic: HapticDiagram, motion: RecordedMotion, truth: Truth
 ) -> PeerProblem:
-    """Returns what all libraries are asked about a scene.
+    """Returns the problem of a scene for all libraries.
 
     Args:
-        haptic: The scene, built.
-        motion: Of its tool.
-        truth: On that motion.
+        haptic: Diagram of the scene.
+        motion: Motion of its tool.
+        truth: Truth on that motion.
     """
     part = make_native_part(haptic)
     return PeerProblem(
@@ -89,7 +89,7 @@ def make_peer_problem(
         motion=motion,
         tool=haptic.tool,
         objects=haptic.environment,
-        # Braking looks further; it is no contact.
+        # Braking searches further, but is not contact.
         part=replace(part, search_m=part.tolerance_m),
         f_W=truth.F_Tcm_W[:, 3:],
     )
@@ -100,13 +100,13 @@ class FoundContacts:
     """The contacts at each of k ticks, tick after tick, n in all.
 
     Attributes:
-        start: (k + 1,) those of tick i are the rows start[i] to start[i + 1].
+        start: (k + 1,) first rows: tick i has the rows from start[i] to start[i + 1].
         distance: (n,) signed distance, m.
         nhat_BA_W: (n, 3) unit normal out of the object into the tool.
         p_WCa: (n, 3) witness point on the tool, m.
         p_WCb: (n, 3) witness point on the object, m.
-        object_index: (n,) which object.
-        seconds: (k,) what finding them took, s.
+        object_index: (n,) index of the object.
+        seconds: (k,) times of finding them, s.
     """
 
     start: np.ndarray
@@ -122,9 +122,9 @@ class FoundContacts:
         """Returns contacts whose numbers are in rows.
 
         Args:
-            start: The same as the attribute.
+            start: (k + 1,) first rows, see the attribute.
             rows: (n, 11) distance, normal, both witness points, and the object.
-            seconds: The same as the attribute.
+            seconds: (k,) times of finding them, s.
         """
         distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
         index = owner[:, 0].astype(np.int32)
@@ -134,9 +134,9 @@ class FoundContacts:
 
 
 def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
-    """Returns what this package's clustering and penalty law make of contacts.
+    """Returns the wrenches of contacts by this package's clustering and penalty law.
 
-    So that the query alone differs. A contact without a finite normal pushes nothing.
+    Only the query then differs. A contact without a finite normal exerts no force.
     """
     part, motion = problem.part, problem.motion
     cluster, force = part.make_clustering(), part.make_force()

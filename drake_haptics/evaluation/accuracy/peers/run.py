@@ -39,12 +39,12 @@ class PeerMethod:
     """One way to a contact wrench.
 
     Attributes:
-        library: Its name.
-        package: That is installed with pip.
-        module: Of this folder; imports the library.
-        function: In it, an `Answer`.
-        words: What is asked, for the report.
-        for_pieces: Whether it is another method's where the tool is one piece.
+        library: Name of the library.
+        package: Package that is installed with pip.
+        module: Module of this folder that imports the library.
+        function: Function of the module, an `Answer`.
+        words: Description of the query, for the report.
+        for_pieces: Whether it is the same as another method if the tool is one piece.
     """
 
     library: str
@@ -96,20 +96,20 @@ def run_peers(
 ) -> tuple[PeerRow, ...]:
     """Compares other libraries' contact wrenches with the truth.
 
-    The tool is put where it was, with its velocity, at each tick; objects rest. All
-    have the scene's stiffness and damping and no friction. Effects are left out, of
-    the truth too. Times are those inside the library: in C++ around its query (this
-    package's law is not counted), from Python around the one call to Drake. A tick's is
+    At each tick the tool has its recorded pose and velocity; objects rest. All have the
+    scene's stiffness and damping and no friction. Effects are left out, of the truth
+    too. Times are those inside the library: in C++ around its query (this package's law
+    is not counted), from Python around the one call to Drake. A tick's time is that of
     the middle of several passes.
 
     Args:
-        scene: What was recorded.
-        motion: Of its tool.
-        truth: On that motion.
-        progress: Called with what is done now and the share of all, in [0, 1].
+        scene: Scene whose motion was recorded.
+        motion: Motion of its tool.
+        truth: Truth on that motion.
+        progress: Callback that takes the current work and the share done, in [0, 1].
 
     Returns:
-        A row for each of `METHODS`, with why not where a library is absent or fails.
+        A row for each of `METHODS`, with the reason if a library is absent or fails.
     """
     report = progress or (lambda what, share: None)
     if scene.effects != Effects():
@@ -145,7 +145,7 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
 
 
 def _leave_out_effects(scene: Scene) -> Scene:
-    """Returns a copy of a scene without effects, and materials that name none."""
+    """Returns a copy of a scene without effects, whose materials name none."""
     bare = copy.deepcopy(scene)
     bare.effects = Effects()
     for item in bare.environment:
@@ -168,16 +168,16 @@ def add_peers(
     *,
     progress: Callable[[str, float], None] | None = None,
 ) -> AccuracyStudy:
-    """Returns a study with a row for each way of another library.
+    """Returns a study with a row for each method of another library.
 
     Args:
-        study: Of the scene.
-        scene: Whose motion is recorded again, which is the same again.
-        progress: Called with what is done now and the share of all, in [0, 1].
+        study: Study of the scene.
+        scene: Scene whose motion is recorded again, the same as before.
+        progress: Callback that takes the current work and the share done, in [0, 1].
 
     Raises:
         RunError: The scene diverges.
-        KeyboardInterrupt: At Ctrl-C.
+        KeyboardInterrupt: Ctrl-C is pressed.
     """
     motion = record_motion(scene, study.ticks / scene.device.rate_hz)
     truth = find_truth(study.reference.apply(scene), motion)

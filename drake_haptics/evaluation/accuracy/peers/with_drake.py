@@ -48,9 +48,9 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
 
-# Of a tool whose motion is given; they change nothing.
+# Inertia of a tool whose motion is given; it changes nothing.
 _MASS_KG, _RADIUS_M = 0.1, 0.1
-# Against a rigid object forces are proportional to the modulus: any will do at first.
+# Forces on a rigid object are proportional to the modulus, so it is fitted afterwards.
 _MODULUS_PA = 1e6
 # Pieces and meshes are exact; this is for round shapes alone, m.
 _RESOLUTION_M = 2e-3
@@ -62,10 +62,10 @@ class DrakePlant:
     """A continuous plant, whose contacts are a function of pose and velocity alone.
 
     Attributes:
-        plant: Finalized.
-        scene_graph: With its geometry.
-        tool: Of the plant.
-        root: A context of the diagram.
+        plant: Plant, finalized.
+        scene_graph: Scene graph with its geometry.
+        tool: Body of the tool in the plant.
+        root: Context of the diagram.
     """
 
     plant: MultibodyPlant
@@ -83,13 +83,13 @@ class DrakePlant:
         """Moves the tool as recorded and asks at each tick.
 
         Args:
-            motion: Of the tool.
-            port: Evaluated at each tick.
-            ask: Called with the port's value.
-            read: Called with the tick and the answer, once for each.
+            motion: Motion of the tool.
+            port: Port that is evaluated at each tick.
+            ask: Function of the port's value that returns the answer.
+            read: Callback that takes the tick and the answer, once for each tick.
 
         Returns:
-            (n,) what evaluating and asking took, poses brought up to date included, s.
+            (n,) times of evaluating and asking, s, the update of poses included.
         """
         context = self.plant.GetMyMutableContextFromRoot(self.root)
         of_port = port.get_system().GetMyContextFromRoot(self.root)
@@ -114,12 +114,12 @@ def make_plant(
     """Builds a plant with a tool and objects.
 
     Args:
-        contact_model: As `MultibodyPlantConfig` has it.
+        contact_model: Name of the contact model, see `MultibodyPlantConfig`.
         X_WO: (m, 7) poses of the objects.
-        add: Gives a body its geometry: called with the plant, the body, the object's
-            index or -1 for the tool, and where the geometry is in the body's frame.
+        add: Callback that gives a body its geometry: it takes the plant, the body, the
+            object's index or -1 for the tool, and the geometry's pose in the body.
     """
-    # Qhull tells of flat pieces.
+    # Qhull warns of flat pieces.
     with quiet_streams(2):
         return _build(contact_model, X_WO, add)
 
@@ -144,7 +144,7 @@ def answer_on_pieces(problem: PeerProblem) -> PeerAnswers:
 
 
 def answer_on_meshes(problem: PeerProblem) -> PeerAnswers:
-    """Takes the plant's own forces on `Mesh` shapes, of which it uses the hulls."""
+    """Takes the plant's own forces on `Mesh` shapes, whose hulls it uses."""
 
     def add(
         plant: MultibodyPlant, body: RigidBody, which: int, X_BM: RigidTransform
@@ -184,7 +184,7 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
 def _find_part(
     problem: PeerProblem, which: int
 ) -> tuple[Decomposition, ProximityProperties]:
-    """Returns the shape of the tool (-1) or an object, and what it is made of."""
+    """Returns the shape of the tool (-1) or an object, and its contact material."""
     stiffness, damping = problem.part.stiffness_N_per_m, problem.part.damping_Ns_per_m
     if np.ptp(stiffness) > 0.0 or np.ptp(damping) > 0.0:
         # The tool would need another surface for each object.
@@ -226,14 +226,14 @@ def _read_forces(problem: PeerProblem, add: AddGeometry) -> PeerAnswers:
 def _find_owners(
     problem: PeerProblem, drake: DrakePlant
 ) -> dict[GeometryId, tuple[int, RigidTransform]]:
-    """Returns the object (or -1) of each piece, and where its frame is in the body."""
+    """Returns the object (or -1) of each piece, and the piece's pose in the body."""
     inspector = drake.scene_graph.model_inspector()
     owners = {
         piece: (-1, inspector.GetPoseInFrame(piece))
         for piece in drake.plant.GetCollisionGeometriesForBody(drake.tool)
     }
     anchored = iter(drake.plant.GetCollisionGeometriesForBody(drake.plant.world_body()))
-    # In the order in which they were added.
+    # They are in the order in which they were added.
     for i, part in enumerate(problem.objects):
         for _ in part.pieces:
             piece = next(anchored)
@@ -258,7 +258,7 @@ def _to_row(
 
 
 def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
-    """Has the tool as a compliant `Mesh`, which Drake fills as its convex hull."""
+    """Makes the tool a compliant `Mesh`, which Drake fills as its convex hull."""
 
     def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
         shape = to_drake_mesh(problem.tool)
@@ -268,7 +268,7 @@ def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
 
 
 def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
-    """Has the tool's pieces compliant, each by itself."""
+    """Makes the tool's pieces compliant, each by itself."""
 
     def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
         register_pieces(plant, body, RigidTransform(), problem.tool, soft)
@@ -279,8 +279,8 @@ def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
 def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
     """Takes the plant's hydroelastic forces; there is no distance.
 
-    No modulus is the scene's stiffness: it is the one whose forces are nearest to the
-    reference's, in least squares over the whole motion.
+    No modulus corresponds to the scene's stiffness: the one is taken whose forces are
+    nearest to the reference's, in least squares over the whole motion.
     """
     rigid, soft = _make_surface(), _make_surface()
     AddRigidHydroelasticProperties(_RESOLUTION_M, rigid)
@@ -333,10 +333,10 @@ def _make_surface() -> ProximityProperties:
 
 
 def _fit(f_W: np.ndarray, wanted_W: np.ndarray) -> float:
-    """Returns the factor that brings forces nearest to others; 1 where there are none.
+    """Returns the factor that brings forces nearest to wanted ones; 1 if all are 0.
 
     Raises:
-        ValueError: None above zero does.
+        ValueError: The factor is not positive.
     """
     if not f_W.any():
         return 1.0

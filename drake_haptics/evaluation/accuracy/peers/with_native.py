@@ -74,9 +74,9 @@ def _load_coal() -> ctypes.CDLL:
 
 
 def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
-    """Asks `mj_collision`, with poses and trees brought up to date, in C.
+    """Calls `mj_collision`, with poses and trees brought up to date, in C.
 
-    For one contact of each pair of pieces, as this package's law has it.
+    It returns one contact for each pair of pieces, as this package's law takes them.
     """
     native = _load_mujoco()
     scene = open_mjcf(native.mujoco_contacts_new, _make_mjcf(problem))
@@ -92,7 +92,7 @@ def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
 
 
 def _make_mjcf(problem: PeerProblem) -> str:
-    """Returns a body for each object, and a free one, the last, for the tool."""
+    """Returns a model with a body for each object, and a free last one for the tool."""
     parts = {f"object{i}": part for i, part in enumerate(problem.objects)}
     assets = [mesh_assets(name, part) for name, part in parts.items()]
     objects = [
@@ -132,10 +132,10 @@ def _copy_contacts(
     """Returns the contacts that an adapter holds after a run.
 
     Args:
-        copy: Its function.
-        scene: Its object.
-        count: What its run returned.
-        seconds: (PASSES, k) what each tick took, the clock included, s.
+        copy: Function of the adapter that copies contacts.
+        scene: Handle of the adapter's scene.
+        count: Number of contacts, which its run returned.
+        seconds: (PASSES, k) times of each tick, the clock included, s.
     """
     start = np.empty(seconds.shape[1] + 1, dtype=np.int32)
     rows = np.empty((count, _CONTACT_SIZE))

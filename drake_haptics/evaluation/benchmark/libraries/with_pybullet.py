@@ -29,12 +29,12 @@ with quiet_streams(1, 2):
 class BulletQuery:
     """One pair, less what the same call costs for two spheres.
 
-    Of the up to four points that Bullet returns the deepest is its answer.
+    Bullet returns up to four points; the deepest is its answer.
     """
 
     def __init__(self, pair: PairShape):
         self._client = pybullet.connect(pybullet.DIRECT)
-        weakref.finalize(self, pybullet.disconnect, self._client)  # there are few
+        weakref.finalize(self, pybullet.disconnect, self._client)  # clients are few
         self._A, self._B = (
             self._add(pybullet.GEOM_MESH, vertices=vertices.tolist())
             for vertices in (pair.A_vertices, pair.B_vertices)

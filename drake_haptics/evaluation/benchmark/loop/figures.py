@@ -1,4 +1,4 @@
-"""Holds what loops cost and did, and makes the tables of it."""
+"""Holds the times and the motions of loops, and makes their tables."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.report.page import Table
 
-# What is added to the name of a loop each of whose ticks waits for the clock.
+# Suffix of the name of a loop whose ticks wait for the clock.
 PACED = ", paced"
 BACKEND = "drake_haptics, your own backend"
 PLANT = "drake_haptics, your own plant"
@@ -23,7 +23,7 @@ STOCK = {
 }
 MUJOCO = "MuJoCo, mj_step"
 EMPTY = "Drake, one empty Python system"
-# What each of them does in a tick.
+# The work of each loop in a tick.
 _COMPUTES = (
     "drake_haptics: every pair within the tolerance with its exact depth, stiffness "
     "shared among contacts, an implicit step of tool, contact and coupling; its native "
@@ -41,17 +41,17 @@ class LoopFigures:
     """The times of one loop, and its motion.
 
     Attributes:
-        scene: Its name.
-        loop: Its name, see `names`.
+        scene: Name of the scene.
+        loop: Name of the loop, such as `OURS`.
         in_contact: Times of the ticks at which all loops have a contact.
         all_ticks: Times of all ticks but the first, which starts from nothing.
         median_contacts: Pairs of pieces that push, over the ticks in contact.
-        max_contacts: The most.
+        max_contacts: Most pairs of pieces that push at a tick.
         deepest_m: Largest penetration of a pair of pieces, m.
         force_N: Median force of the spring between handle and tool, in contact, N.
-        max_force_N: The largest, N.
+        max_force_N: Largest force of this spring, N.
         apart_m: Median distance of the tool from this package's, m. It and the three
-            before it are NaN where there is no tool.
+            before it are NaN if there is no tool.
     """
 
     scene: str
@@ -67,7 +67,7 @@ class LoopFigures:
 
 
 def loop_tables(figures: Sequence[LoopFigures]) -> list[Table]:
-    """Returns what the loops cost, and what they did for it, scene by scene."""
+    """Returns tables of the loops' times and motions, scene by scene."""
     tables = []
     for scene in dict.fromkeys(f.scene for f in figures):
         by_name = {f.loop: f for f in figures if f.scene == scene}

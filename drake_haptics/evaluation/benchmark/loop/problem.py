@@ -1,4 +1,4 @@
-"""Defines what a loop is given and tells: a tool that is drawn along a recorded way."""
+"""Defines the problem and the course of a loop that draws a tool along a motion."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class LoopProblem:
     """The problem that every loop is given.
 
     Attributes:
-        name: Of the scene.
-        scene: Its gains, and where its objects are; without effects.
-        motion: Of the handle, tick by tick; where the tool was is not used.
-        tool: In convex pieces.
-        objects: In convex pieces, at rest.
+        name: Name of the scene.
+        scene: Scene with the gains and the objects' poses; without effects.
+        motion: Motion of the handle, tick by tick; that of the tool is not used.
+        tool: Tool in convex pieces.
+        objects: Objects in convex pieces, at rest.
     """
 
     name: str
@@ -69,9 +69,10 @@ class LoopProblem:
 
     @property
     def explicit_rotational_damping(self) -> float:
-        """The coupling's, at most I / h, which a force of the step's beginning holds.
+        """The coupling's rotational damping, at most I / h, N·m·s/rad.
 
-        N·m·s/rad; I is the tool's least moment of inertia and h the tick.
+        I is the tool's least moment of inertia and h the tick. With this damping, a
+        force that is taken at the beginning of the step is stable.
         """
         least = float(np.linalg.eigvalsh(self.mass_properties()[1]).min())
         own = self.scene.coupling.rotational_damping_Nms_per_rad
@@ -88,7 +89,7 @@ class LoopProblem:
             p_WTo: (n, 3) positions of the tool's origin, m.
 
         Returns:
-            (n,) N.
+            (n,) forces, N.
         """
         stretch_m = np.linalg.norm(self.X_WG[:, 4:] - p_WTo, axis=1)
         return self.scene.coupling.stiffness_N_per_m * stretch_m
@@ -102,7 +103,7 @@ class LoopCourse:
         X_WT: (n, 7) poses of the tool, m.
         num_contacts: (n,) pairs of pieces that push each other.
         nearest_m: (n,) smallest signed distance of them, m; 0 without a contact.
-        force_N: (n,) of the spring between handle and tool, N.
+        force_N: (n,) force of the spring between handle and tool, N.
     """
 
     X_WT: np.ndarray
@@ -115,11 +116,11 @@ class Loop(Protocol):
     """A loop, ready to be run."""
 
     def observe(self) -> LoopCourse | None:
-        """Runs the motion from its start; tells what happened, None without a tool."""
+        """Runs the motion from its start; returns its course, None without a tool."""
         ...
 
     def time(self) -> np.ndarray:
-        """Runs the motion from its start; (n,) what each tick took, s."""
+        """Runs the motion from its start; returns the time (n,) of each tick, s."""
         ...
 
 
@@ -127,8 +128,8 @@ def make_problem(name: str = "cup_spoon", duration_s: float = 4.0) -> LoopProble
     """Returns a shipped scene without effects, with the motion of its hand.
 
     Args:
-        name: Of the scene.
-        duration_s: Of the motion, s.
+        name: Name of the scene.
+        duration_s: Duration of the motion, s.
     """
     scene = load_scene(find_scene(name))
     haptic = build_without_scene_warnings(scene)

@@ -39,7 +39,7 @@ from drake_haptics.evaluation.benchmark.outside_library import OutsideLibrary
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
 
-# This package's: each is run as fast as it can, and paced.
+# This package's loops: each is run as fast as it can, and paced.
 _OWN: dict[str, Callable[..., Loop]] = {
     BACKEND: BackendLoop,
     PLANT: PlantLoop,
@@ -54,7 +54,7 @@ def make_loops(
     """Returns name -> loop, this package's first; and library -> why it is missing.
 
     Args:
-        problem: What they are given.
+        problem: Problem that the loops are given.
         outside: Libraries that were named for this run.
     """
     loops: dict[str, Loop] = {
@@ -90,15 +90,15 @@ def run_loops(
 ) -> list[LoopFigures]:
     """Returns the figures of each loop.
 
-    Each runs the whole motion, then the next one does, in an order that rotates. What
-    a tick takes is the mean of the middle half of its repeats, so that interruptions
+    Each runs the whole motion, then the next one does, in an order that rotates. A
+    tick's time is the mean of the middle half of its repeats, so that interruptions
     fall out.
 
     Args:
-        problem: What they were made of.
+        problem: Problem that the loops were made of.
         loops: Name -> loop, this package's whole tick among them.
-        repeats: Of each; at least 3.
-        progress: Called with the share that is done, in [0, 1].
+        repeats: Number of runs of each loop; at least 3.
+        progress: Callback that takes the share done, in [0, 1].
     """
     names = list(loops)
     courses = {name: loops[name].observe() for name in names}

@@ -1,4 +1,4 @@
-"""Runs loops in Drake's Simulator: times ticks one by one, and reads what happens."""
+"""Runs loops in Drake's Simulator: times each tick, and observes the course."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ def time_ticks(
     paced: bool,
     between: Callable[[int], None] = lambda tick: None,
 ) -> np.ndarray:
-    """Returns what each tick takes, (ticks,), s.
+    """Returns the time (ticks,) of each tick, s.
 
     Args:
-        simulator: At time 0, not initialized.
+        simulator: Simulator at time 0, not initialized.
         ticks: Number of ticks.
-        period_s: From tick to tick, s.
+        period_s: Period of the ticks, s.
         paced: Whether each tick waits for the clock, as for a device; else it follows
             the one before at once.
-        between: Called after each tick with the number of the next one. Neither its
-            time nor the waiting belongs to a tick.
+        between: Callback after each tick that takes the number of the next one. Neither
+            its time nor the waiting belongs to a tick.
     """
     begins: list[float] = []
     ends: list[float] = []
@@ -66,10 +66,10 @@ class SimulatedLoop(ABC):
     """A loop whose ticks Drake's Simulator makes."""
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Keeps what the loop is given.
+        """Keeps the problem of the loop.
 
         Args:
-            problem: What it is given.
+            problem: Problem of the loop.
             paced: Whether ticks that are timed wait for the clock, as for a device;
                 else each follows the one before at once.
         """
@@ -91,13 +91,13 @@ class SimulatedLoop(ABC):
 def observe_ticks(
     problem: LoopProblem, simulator: Simulator, pose: OutputPort, contacts: OutputPort
 ) -> LoopCourse:
-    """Returns what happens in a loop; reading costs nothing twice, but is not timed.
+    """Returns the course of a loop, in a run that is not timed.
 
     Args:
-        problem: What the loop is given.
-        simulator: At the beginning of the motion.
-        pose: Begins with the tool's [qw qx qy qz x y z], m.
-        contacts: The `ContactSet` of each tick.
+        problem: Problem of the loop.
+        simulator: Simulator at the beginning of the motion.
+        pose: Port whose value begins with the tool's [qw qx qy qz x y z], m.
+        contacts: Port of the `ContactSet` of each tick.
     """
     root = simulator.get_context()
     pose_context = pose.get_system().GetMyContextFromRoot(root)
@@ -121,7 +121,7 @@ def observe_ticks(
 
 
 class EmptyLoop(SimulatedLoop):
-    """What Drake's Simulator and one call of Python take in each tick."""
+    """A loop without a tool: Drake's Simulator and one call of Python in each tick."""
 
     def observe(self) -> None:
         """Has no tool; see `Loop.observe`."""

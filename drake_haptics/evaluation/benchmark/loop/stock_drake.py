@@ -56,8 +56,8 @@ class StockLoop:
         """Builds the diagram.
 
         Args:
-            problem: What is asked.
-            solver: One that `has_solver`.
+            problem: Problem of the loop.
+            solver: Contact solver for which `has_solver` is true.
             paced: Whether ticks that are timed wait for the clock.
         """
         self._problem = problem
@@ -68,7 +68,7 @@ class StockLoop:
             contact_model="point",
             discrete_contact_approximation=solver,
         )
-        # Drake warns that TAMSI will go. Qhull tells of flat pieces.
+        # Drake warns that TAMSI will be removed, Qhull that pieces are flat.
         with quiet_streams(2):
             self._plant, _ = AddMultibodyPlant(config, builder)
             self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
@@ -102,7 +102,7 @@ class StockLoop:
         return self._run(lambda context: None, paced=self._paced)
 
     def _run(self, note: Callable[[Context], None], *, paced: bool) -> np.ndarray:
-        """Calls `note` before each tick; (n,) what each tick took, s."""
+        """Calls `note` before each tick; returns the time (n,) of each tick, s."""
         plant, motion = self._plant, self._problem.motion
         simulator = Simulator(self._diagram)
         context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())

@@ -28,8 +28,8 @@ from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# A row of the recording begins by this share of a tick early, so that round-off of the
-# time never shows the one before.
+# A row of the recording begins early by this share of a tick, so that round-off of the
+# time never selects the row before.
 _EARLY = 1e-3
 
 
@@ -87,7 +87,7 @@ class SceneLoop(ThisLoop):
 
 
 class _RecordedBackend(DeviceBackend):
-    """A device whose handle is elsewhere at each reading, as recorded."""
+    """A device whose handle moves as recorded, from reading to reading."""
 
     def __init__(self, problem: LoopProblem):
         motion = problem.motion
@@ -99,24 +99,24 @@ class _RecordedBackend(DeviceBackend):
             self._readings.append(
                 DeviceReading(tick, time_s, handle[:7], handle[7:], np.zeros(6))
             )
-        # Whoever builds a loop reads where the handle is; that moves nothing.
+        # Building a loop reads the handle's pose, which must not advance the recording.
         self._next: Iterator[DeviceReading] = itertools.repeat(self._readings[0])
 
     @property
     def is_placed(self) -> bool:
-        """Tells whether its base is where the scene has it: always."""
+        """Tells whether its base is where the scene has it, which is always so."""
         return True
 
     def rewind(self) -> None:
-        """Reads the first one next."""
+        """Goes back to the first reading."""
         self._next = iter(self._readings)
 
     def read(self) -> DeviceReading | None:
-        """Returns the next reading, and none after the last."""
+        """Returns the next reading, or None after the last."""
         return next(self._next, None)
 
     def write(self, command: DeviceCommand) -> None:
-        """Shows nothing."""
+        """Ignores the command."""
 
     def close(self) -> None:
         """Has nothing to close."""

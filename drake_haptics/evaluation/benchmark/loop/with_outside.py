@@ -21,8 +21,8 @@ from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 class OutsideLoop:
     """Law, coupling and step of this package, in Python; contacts of another library.
 
-    The law is that of `NativeLoop`. A contact from outside is a point, though: the
-    overlap of two faces is at the library's witness.
+    The law is that of `NativeLoop`. A contact from outside is a point, though: that of
+    two overlapping faces is the library's witness point.
     """
 
     def __init__(self, problem: LoopProblem, library: type[OutsideLibrary]):
@@ -60,7 +60,7 @@ class OutsideLoop:
             return self._run()[1]
 
     def _run(self) -> tuple[LoopCourse, np.ndarray]:
-        """Returns what happened, and (n,) what each tick took, s."""
+        """Returns the course of the loop, and the time (n,) of each tick, s."""
         motion, n = self._problem.motion, len(self._problem.motion)
         tolerance_m = self._problem.scene.contact.tolerance_m
         pairs = PiecePairs(*self._arguments)

@@ -50,7 +50,7 @@ class PlantLoop(SimulatedLoop):
             _add_objects(self._plant, problem)
             self._plant.Finalize()
         with warnings.catch_warnings():
-            # Of an explicit step that may not hold the rotation of the coupling.
+            # It warns that an explicit step may not hold the coupling's rotation.
             warnings.simplefilter("ignore", SceneWarning)
             self._rendering = AddHapticRendering(
                 builder,
@@ -104,7 +104,7 @@ def _add_objects(plant: MultibodyPlant, problem: LoopProblem) -> None:
 def _add_shape(
     plant: MultibodyPlant, body: RigidBody, decomposition: Decomposition
 ) -> None:
-    """Gives a body the mesh that the pieces are of."""
+    """Gives a body the mesh of a decomposition."""
     plant.RegisterCollisionGeometry(
         body,
         RigidTransform(),
