@@ -1,7 +1,7 @@
 """The systems of the haptic loop, each by its own name.
 
-They are in sub-packages by what they do, and are imported when they are first asked
-for: what a scene does not name is not even loaded.
+They are in sub-packages by purpose, and are imported on first use: a system that a
+scene does not name is not even loaded.
 """
 
 import lazy_loader

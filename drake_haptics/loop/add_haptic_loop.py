@@ -48,8 +48,8 @@ from drake_haptics._core import CouplingGains
 
 # Effects that push the tool, each through the input of its name.
 _FORCES = ("friction", "braking", "gravity")
-# Half the width of a hand, m: by this length core/base/passive_part.h as well compares
-# a torque with a force at a handle.
+# Half the width of a hand, m: core/base/passive_part.h also compares a torque with a
+# force at a handle by this length.
 _HANDLE_LENGTH_M = 0.05
 
 
@@ -73,32 +73,34 @@ def AddHapticLoop(
 ) -> HapticLoop:
     """Adds the systems of a haptic loop around a device and connects them.
 
-    An effect that is not asked for has no system, no port and no cost. Objects that
-    move are left to the caller: see `ConnectMovingObject`.
+    An effect that is None has no system, no port and no cost. Objects that move are
+    left to the caller: see `ConnectMovingObject`.
 
     Args:
-        builder: Gets the systems, the device among them.
-        device: Not yet in a builder, as of `make_device_port`.
+        builder: Builder that gets the systems, the device among them.
+        device: Device, not yet in a builder, as from `make_device_port`.
         tool: Pieces of the tool, in its frame T: `decompose(mesh).core`.
-        tool_dynamics: Mass and inertia of the tool, as of
+        tool_dynamics: Mass and inertia of the tool, as from
             `drake_haptics.geometry.mesh.mesh.make_tool_dynamics`.
         objects: Objects that the tool meets.
         contact: Tolerance, clustering and gains.
-        coupling: Gains between handle and tool; it yields at the device's limits.
+        coupling: Gains between handle and tool; the coupling yields at the device's
+            limits.
         X_HT: Pose of the tool in the handle at rest.
         X_WT: Initial pose of the tool in the world.
         period_s: The tick, s; also the device's.
         effects: Effects besides contact. Defaults to none.
-        materials: Of each object, in their order; what one does not give is that of
-            `contact` and `effects`.
-        load_shedding: Says what to leave out of ticks that take too long; not yet in a
-            builder. The loop must be the first part of its diagram then, and a
+        materials: Material of each object, in their order; values that it does not give
+            are those of `contact` and `effects`.
+        load_shedding: System that drops work from ticks that take too long; not yet in
+            a builder. The loop must be the first part of its diagram then, and a
             `TickEnd` the last.
-        servo_period_s: How often contact is solved between ticks under the constraint
-            law, s: by a thread of the device, or in Drake where it is simulated, with
-            a port of that period. Defaults to at every tick.
+        servo_period_s: Period at which contact is solved between ticks under the
+            constraint law, s: by a thread of the device, or in Drake where it is
+            simulated, with a port of that period. Defaults to the tick.
         in_one_call: Whether the core goes from query to force in one call where no
-            effect stands between; else each system computes its own, to be timed.
+            effect comes between; else each system computes its own part, so that it can
+            be timed.
 
     Returns:
         The systems.
@@ -197,7 +199,7 @@ def AddHapticLoop(
         stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
         contacts_N_per_m = stiffness.tolist()
     _connect_base(builder, base)
-    # The constraint law's step has its friction itself.
+    # The step of the constraint law includes friction.
     is_own = base.penalty is None and effects.friction is not None
     site = EffectSite(
         effects=replace(effects, friction=None) if is_own else effects,
@@ -243,7 +245,7 @@ def AddHapticLoop(
 def _find_servo(
     device: HapticDevice, X_WT: RigidTransform, servo_period_s: float | None
 ) -> Callable[[_core.ConstraintStepper], _core.ContactServo] | None:
-    """Returns what starts the thread of a device that is not simulated, if asked."""
+    """Returns the function that starts the servo of a real device, if there is one."""
     start = device.start_contact_servo
     if servo_period_s is None or start is None:
         return None
@@ -275,7 +277,7 @@ def _add_handle_model(
     sources: Mapping[str, OutputPort],
     chain: Mapping[str, OutputPort],
 ) -> None:
-    """Tells the device how its wrench goes on between two ticks."""
+    """Adds the system that models how the wrench changes between two ticks."""
     model = builder.AddNamedSystem(
         "handle_model",
         HandleModel(
@@ -300,7 +302,7 @@ def _add_handle_model(
 
 
 def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
-    """Returns what systems of effects ask for, by the names of their inputs."""
+    """Returns the sources for systems of effects, by the names of their inputs."""
     shedding: dict[str, OutputPort] = {}
     if base.load_shedding is not None:
         shedding["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
@@ -326,13 +328,14 @@ def make_coupling_gains(
     A hand may be stronger than the motors it holds, and a mouse has none: without a
     limit it would press the tool through whatever it meets. Where a device shows force
     and no torque, a hand could still pry the tool through a wall: there the tool is
-    turned with no more than the largest force has at half the width of a hand, 5 cm.
-    A device that shows no force says nothing of how hard the tool may be pressed:
-    there the coupling does not yield.
+    turned with no more than the torque of the largest force at half the width of a
+    hand, 5 cm. A device that shows no force gives no limit for pressing the tool: there
+    the coupling does not yield.
 
     Args:
         coupling: Stiffness and damping.
-        device: Its limits are the coupling's; None for a handle that has none.
+        device: Device, whose limits are the coupling's; None for a handle without
+            limits.
     """
     if device is None:
         return CouplingGains(**asdict(coupling))

@@ -40,8 +40,8 @@ from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
 if TYPE_CHECKING:
     from drake_haptics.tick_log.tick_recorder import TickRecorder
 
-# Of the tool's size: how far contacts can be from a deeper one that stands for them
-# where a tick takes too long.
+# Largest distance of contacts from a deeper one that replaces them where a tick takes
+# too long, as a share of the tool's size.
 _LARGEST_CELL = 0.1
 
 
@@ -50,17 +50,18 @@ class HapticDiagram:
     """A scene as a diagram, ready for a Simulator.
 
     Attributes:
-        diagram: Owns all systems, and has the outputs that `HapticLoop.outputs` lists:
+        diagram: Diagram that owns all systems and has the outputs that
+            `HapticLoop.outputs` lists:
             `diagram.GetOutputPort("F_Ho_W_rendered").Eval(context)`, in its own
             context.
         scene: Scene from which it was built.
         period_s: The tick, s.
         loop: The systems of the loop.
-        tool: The tool's mesh and convex pieces.
-        environment: The same for each object of the scene, in its order.
-        visualizer: Draws it; None without a Meshcat.
+        tool: Mesh and convex pieces of the tool.
+        environment: Mesh and convex pieces of each object of the scene, in its order.
+        visualizer: System that draws the loop; None without a Meshcat.
         backend: The device behind the port; None where it is simulated.
-        X_WB: Pose of the base of that backend; None if it is simulated.
+        X_WB: Pose of the base of that backend in the world; None if it is simulated.
     """
 
     diagram: Diagram
@@ -77,9 +78,10 @@ class HapticDiagram:
     def skin_speed_m_per_s(self) -> float:
         """Speed at which the tool crosses `contact.tolerance_m` in one step, m/s.
 
-        Above it a step may carry the tool from beyond the tolerance into a shape: it is
-        met all the same, but as deep as the step has taken it. Infinite under
-        `contact.law: constraint`, whose step sees as far as it goes.
+        Above it a step may carry the tool from beyond the tolerance into a shape:
+        contact is found all the same, but as deep as the step has taken the tool. The
+        speed is infinite under `contact.law: constraint`, whose step sees as far as it
+        moves.
         """
         return calc_skin_speed(self.scene.contact, self.period_s)
 
@@ -107,39 +109,39 @@ def BuildHapticDiagram(
 
     Args:
         scene: Scene to build.
-        device: What is held: a backend, open, that remains the caller's to close, or
-            your own port. If not given, the scene's hand holds a simulated one.
-        recorder: Notes every tick, by a `TickLogSink` that is otherwise not in the
-            diagram; remains the caller's to close.
-        meshcat: Draws the scene there, by a `HapticVisualizer` that is otherwise
+        device: Device that is held: an open backend, which remains the caller's to
+            close, or your own port. Defaults to a simulated device in the scene's hand.
+        recorder: Recorder of every tick, used by a `TickLogSink` that is otherwise not
+            in the diagram; it remains the caller's to close.
+        meshcat: Meshcat to draw the scene in, by a `HapticVisualizer` that is otherwise
             not in the diagram.
-        progress: Called during the decomposition with the name of the object and
-            the share done in [0, 1].
-        reuse: What was built before of a similar scene. Pieces are taken from it
-            instead of being cut again, and a backend stays where its base stands.
-        X_WH: Where the handle of a backend that can stand anywhere is put; where the
-            scene's hand starts if not given.
+        progress: Function that is called while meshes are cut, with the name of the
+            object and the share done in [0, 1].
+        reuse: Earlier diagram of a similar scene. Pieces are taken from it instead of
+            being cut again, and a backend stays where its base stands.
+        X_WH: Pose at which the handle of a backend that can stand anywhere is put.
+            Defaults to the start of the scene's hand.
 
     Returns:
-        The diagram and its parts. All systems have snake_case names; what there is to
-        see has output ports, those of `HapticLoop.outputs`.
+        The diagram and its parts. All systems have snake_case names; the output ports
+        are those of `HapticLoop.outputs`.
 
     Warns:
-        SceneWarning: The coupling breaks a bound of stability or passivity: of a
-            simulated device in the scene's hand; of a backend that shows force in the
-            loosest grip, or it is more than the scene's preset is rated for. A port of
-            your own is not checked.
+        SceneWarning: The coupling breaks a bound of stability or passivity: with a
+            simulated device in the scene's hand, or with a backend that shows force in
+            the loosest grip; or it is more than the scene's preset is rated for. A port
+            of your own is not checked.
 
     Raises:
         SceneError: A value is impossible, also in a scene that was made or changed
             in Python, or the hand's path cannot be reached.
-        MeshError: A mesh cannot be treated.
-        DeviceError: The device says nothing, or has no servo for
+        MeshError: A mesh cannot be used.
+        DeviceError: The device gives no usable reading, or has no servo for
             `device.servo_rate_hz`.
         TypeError: An argument, or a value of the scene, is of another kind; the
             message names it.
     """
-    # First what is quick to fail.
+    # The checks that fail quickly come first.
     require_kinds(
         "load_scene(find_scene('cup_spoon')) is a scene", scene=(scene, Scene)
     )
@@ -166,7 +168,7 @@ def BuildHapticDiagram(
     ]
     X_WB = None
     if isinstance(device, DeviceBackend):
-        # Only now: while meshes are cut, a hand moves on.
+        # Read only now: while meshes are cut, a hand moves on.
         if reuse is not None and reuse.backend is device:
             X_WB = reuse.X_WB
         X_WB = X_WB or place_device(scene, device, X_WH)
@@ -208,7 +210,7 @@ def BuildHapticDiagram(
 
         visualizer = add_picture(builder, loop, meshcat, tool.core, objects, period_s)
     if meter is not None:
-        # The last to publish: what a tick takes includes its drawing.
+        # The last to publish: the time of a tick includes its drawing.
         builder.AddNamedSystem("tick_end", TickEnd(meter, period_s))
     for name, port in loop.outputs.items():
         builder.ExportOutput(port, name)
@@ -226,7 +228,7 @@ def BuildHapticDiagram(
 
 
 def _find_servo_period(scene: Scene) -> float | None:
-    """Returns how often contact is solved, s; None where it is at every tick."""
+    """Returns the period at which contact is solved, s; None for that of the tick."""
     device = scene.device
     more = device.servo_rate_hz is not None and device.servo_rate_hz > device.rate_hz
     return device.wrench_period_s if more else None
@@ -235,7 +237,7 @@ def _find_servo_period(scene: Scene) -> float | None:
 def _list_pieces(
     haptic: HapticDiagram | None,
 ) -> list[tuple[Tool | EnvironmentObject, Decomposition]]:
-    """Returns the pieces of a diagram with what they were cut from."""
+    """Returns the pieces of a diagram, each with its part of the scene."""
     if haptic is None:
         return []
     scene = haptic.scene
@@ -248,7 +250,7 @@ def _list_pieces(
 def _make_load_shedding(
     meter: TickMeter | None, scene: Scene, tool: Decomposition
 ) -> LoadShedding | None:
-    """Returns what keeps ticks within a scene's budget, if it has one."""
+    """Returns the system that keeps ticks within a scene's budget, if it has one."""
     budget_us = scene.device.tick_budget_us
     if meter is None or budget_us is None:
         return None
@@ -261,7 +263,7 @@ def _make_load_shedding(
 def _find_port(
     scene: Scene, path: HandPath, device: DeviceBackend | HapticDevice | None
 ) -> HapticDevice | None:
-    """Returns the port of all but a backend, which must be read when all is ready."""
+    """Returns the port, except for a backend, which must be read when all is ready."""
     if isinstance(device, HapticDevice):
         return device
     port = None

@@ -1,4 +1,4 @@
-"""Finds how much room a tool has in what encloses it, and a skin that fits there."""
+"""Finds how much room a tool has between objects, and a skin that fits there."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.contact_law import LARGEST_DEFAULT_SKIN_M, is_constraint
 from drake_haptics.scene.schema import ContactParameters, HandPathParameters, Scene
 
-# So many places of the hand's path are looked at.
+# Number of poses on the hand's path at which the room is measured.
 _PLACES = 100
-# So often a tool is led out of what it is pressed into.
+# Largest number of moves that lead a tool out of the objects that it is pressed into.
 _MOVES = 3
-# What a move costs, by its length, against the share that it wins.
+# Cost of a move per length against the share that it wins.
 _WAY, _ROUNDING = 1e-5, 1e-6
 
 
 @dataclass(frozen=True)
 class Clearance:
-    """How much room a tool has where it has least.
+    """The room that a tool has where it has least.
 
     Attributes:
-        share: Of the distances to be kept, the largest that the tool can be moved to
-            from all surfaces at once: for one distance it is half the play between two
-            walls, divided by it.
-        objects: Indices of the objects that leave no more.
+        share: Largest share of the distances to be kept at which the tool can be moved
+            away from all surfaces at once: for one distance it is half the play between
+            two walls, divided by it.
+        objects: Indices of the objects that allow no larger share.
     """
 
     share: float
@@ -50,19 +50,20 @@ def find_clearance(
 
     A tool that is moved by x is at least dᵢ + nᵢ·x from the piece of contact i, since
     the distance of convex pieces is convex in x. So no translation of at most the
-    tool's own size brings it farther from all pieces than by the largest share s of
-    what should be kept, δᵢ, with s δᵢ ≤ dᵢ + nᵢ·x: a linear program. What lets the
-    tool out on one side, as the floor, a corner or a cone does, leaves s as large as
-    one likes.
+    tool's own size brings it farther from all pieces than by the largest share s of the
+    distances δᵢ that should be kept, with s δᵢ ≤ dᵢ + nᵢ·x: a linear program. Objects
+    that let the tool out on one side, such as a floor, a corner or a cone, leave s
+    unbounded.
 
-    Where the tool overlaps an object it will not be. Where it does so in all tight
-    places, because a hand presses it, the same program leads it out to places beside.
+    Poses at which the tool overlaps an object do not count, since the tool will not be
+    there. If it does so in all tight places, because a hand presses it, the same
+    program leads it out to poses nearby.
 
     Args:
-        tool: Its pieces, in its frame T.
+        tool: Pieces of the tool, in its frame T.
         objects: Pieces of each object and its pose X_WO.
-        poses: Poses X_WT to look at.
-        kept_m: The distance that the tool should be able to keep from each object, m.
+        poses: Poses X_WT at which to measure the room.
+        kept_m: Distance that the tool should be able to keep from each object, m.
     """
     # Two walls that leave less than that on each side are nearer than twice as much,
     # wherever between them the tool is.
@@ -90,7 +91,8 @@ def find_clearance(
             pressed.append(q_WT + np.concatenate([np.zeros(4), x_W]))
     rooms = [room for room in found if room is not None]
     if not rooms:
-        # As it is turned there, the tool may have less room than as it will turn.
+        # In its orientation there, the tool may have less room than in the one it will
+        # take.
         for q_WT in pressed:
             for _ in range(_MOVES):
                 x_W, room = ask(q_WT)
@@ -103,7 +105,7 @@ def find_clearance(
 
 
 def sample_path(parameters: HandPathParameters) -> list[RigidTransform]:
-    """Returns poses X_WT along a hand's path, so many that a tool's way is known."""
+    """Returns poses X_WT along a hand's path, dense enough to know a tool's way."""
     path = make_hand_path(parameters)
     times = np.linspace(0.0, path.duration_s, _PLACES)
     return [vector_to_pose(path.calc(t)[0]) for t in times]
@@ -114,14 +116,14 @@ def fit_skin(
     tool: _core.ConvexPieces,
     objects: Sequence[tuple[_core.ConvexPieces, RigidTransform]],
 ) -> ContactParameters:
-    """Returns a scene's contact with the skin that is not given.
+    """Returns a scene's contact parameters, with a skin if none is given.
 
-    It is that of `find_skins`, or as much of it as the tool can keep on the hand's
-    path.
+    The skin is that of `find_skins`, or as much of it as the tool can keep on the
+    hand's path.
 
     Args:
-        scene: Whose contact it is.
-        tool: Its pieces, in its frame T.
+        scene: Scene with the contact parameters.
+        tool: Pieces of the tool, in its frame T.
         objects: Pieces of each object and its pose X_WO.
     """
     contact = scene.contact
@@ -136,14 +138,14 @@ def fit_skin(
 def round_down(value: float) -> float:
     """Returns a positive number with two digits, the second not rounded up."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 1)
-    # What has two digits already may be a little less by round-off.
+    # A value of two digits may be a little less by round-off.
     return float(f"{digit * math.floor(value / digit * (1.0 + 1e-12)):.2g}")
 
 
 def _find_room(
     contacts: _core.ContactSet, size_m: float, kept_m: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], Clearance | None]:
-    """Returns the shortest move that keeps all contacts away by what they should be.
+    """Returns the shortest move that keeps all contacts at their distances `kept_m`.
 
     If no move keeps all of it, the move keeps the largest possible share of each
     distance, and the `Clearance` holds that share.
@@ -155,7 +157,7 @@ def _find_room(
     distance_m = float(kept_m.max())
     from scipy.optimize import linprog
 
-    # Of (x, -x, s) as shares of the distance, so that all numbers are near 1.
+    # Solved for (x, -x, s) in units of the distance, so that all numbers are near 1.
     solved = linprog(
         [_WAY] * 6 + [-1.0],
         A_ub=np.column_stack([-n_W, n_W, kept_m / distance_m]),
@@ -177,7 +179,7 @@ def _can_leave(
     size_m: float,
     kept_m: NDArray[np.float64],
 ) -> bool:
-    """Whether a move along the mean normal leads the tool away from all surfaces."""
+    """Returns whether a move along the mean normal leads the tool off all surfaces."""
     way = n_W.mean(axis=0)
     length = float(np.linalg.norm(way))
     if length < np.finfo(float).eps:

@@ -34,11 +34,13 @@ class ContactSystems:
     """The systems that find contacts and answer them.
 
     Attributes:
-        contact_query: Finds the contacts.
-        contact_clustering: Keeps many contacts from being stiffer than one.
-        penalty_force: Answers them.
-        pose_sampler: Says where contacts are looked for, if not at every tick.
-        contact_extrapolator: Carries them along then.
+        contact_query: System that finds the contacts.
+        contact_clustering: System that keeps many contacts from being stiffer than one.
+        penalty_force: System that answers them with forces.
+        pose_sampler: System that samples the poses at which contacts are searched for;
+            None if that is at every tick.
+        contact_extrapolator: System that carries contacts along between two queries;
+            None if there is a query at every tick.
     """
 
     contact_query: ContactQuery
@@ -78,15 +80,16 @@ def add_contact_systems(
     enable_chain: bool = False,
     warns_deep: bool = False,
 ) -> ContactSystems:
-    """Adds the systems; their inputs from elsewhere are left to the caller.
+    """Adds the systems of contact; inputs from other systems are left to the caller.
 
     Args:
-        builder: Gets the systems.
+        builder: Builder that gets the systems.
         tool: Pieces of the tool, in its frame T.
         objects: Objects that the tool meets.
         contact: Tolerance, clustering and gains.
-        effects: Contacts are looked for as far as they need.
-        materials: Of each object; gains that one does not give are those of `contact`.
+        effects: Effects, of which braking decides how far contacts are searched for.
+        materials: Material of each object; gains that it does not give are those of
+            `contact`.
         period_s: The tick, s.
         enable_load_shedding: Whether query and clustering take the `load_shedding` of a
             `LoadShedding`.
@@ -100,7 +103,7 @@ def add_contact_systems(
     """
     if len(materials) != len(objects):
         raise ValueError(
-            f"materials must be one for each of the {len(objects)} objects, are"
+            f"materials must have one entry for each of the {len(objects)} objects, has"
             f" {len(materials)}"
         )
     gains = find_contact_gains(contact, materials)
@@ -112,7 +115,7 @@ def add_contact_systems(
             find_query_tolerance(contact, effects),
             cast(DepthSearch, contact.depth),
             contact.max_walk_steps,
-            # Its answer holds for several ticks; `load_shedding` changes in each.
+            # Its result holds for several ticks; `load_shedding` changes in each.
             enable_load_shedding=enable_load_shedding and contact.query_rate_hz is None,
             enable_chain=enable_chain,
         ),
@@ -156,9 +159,9 @@ def add_contact_systems(
 def can_chain(
     objects: Sequence[ContactObject], contact: ContactParameters, effects: Effects
 ) -> bool:
-    """Returns whether nothing comes between the contacts and the step of the tool.
+    """Returns whether no system comes between the contacts and the step of the tool.
 
-    Of effects that read the contacts, these are computed for their ports in any case.
+    Effects that read the contacts need these at their ports in any case.
     """
     return (
         not is_constraint(contact)
@@ -177,7 +180,7 @@ def _add_advance(
     objects: Sequence[ContactObject],
     period_s: float,
 ) -> tuple[PoseSampler, ContactExtrapolator]:
-    """Lets a query look for contacts every so often, and carries them along."""
+    """Makes a query search for contacts once a period, and carries them along."""
     from drake_haptics.systems.contact.contact_extrapolator import ContactExtrapolator
     from drake_haptics.systems.contact.pose_sampler import PoseSampler
 
@@ -211,14 +214,14 @@ def find_skins(
 ) -> list[float]:
     """Returns the skin (m) of each object: its material's, or else the contact's.
 
-    Of a contact that does not say it is `LARGEST_DEFAULT_SKIN_M`.
+    If neither gives one, the skin is `LARGEST_DEFAULT_SKIN_M`.
     """
     skin_m = contact.skin_m or LARGEST_DEFAULT_SKIN_M
     return [material.skin_m or skin_m for material in materials]
 
 
 def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:
-    """Returns how far contacts must be looked for, m."""
+    """Returns the distance up to which contacts must be searched for, m."""
     if effects.braking is None:
         return contact.tolerance_m
     return max(contact.tolerance_m, effects.braking.distance_m)
@@ -227,11 +230,12 @@ def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:
 def connect_by_name(
     builder: DiagramBuilder, system: System, sources: Mapping[str, OutputPort]
 ) -> None:
-    """Connects the inputs of a system whose names say what they want.
+    """Connects the inputs of a system to the sources of their names.
 
     Args:
         builder: Builder of the diagram with the system.
-        system: Of it; inputs that are connected already are left alone.
+        system: System in that diagram; inputs that are connected already are left
+            alone.
         sources: Output ports, by the names of the inputs that they go to.
     """
     for port in map(system.get_input_port, range(system.num_input_ports())):

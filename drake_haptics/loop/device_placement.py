@@ -1,4 +1,4 @@
-"""Places a device in a scene, and makes its port of the scene's diagram."""
+"""Places a device in a scene, and makes its port for the scene's diagram."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class DevicePlacement:
 
     Attributes:
         X_WB: Pose of the device's base in the world.
-        X_BH: Pose of the handle in the base where the scene's hand starts: for devices
+        X_BH: Pose of the handle in the base where the scene's hand starts, for devices
             that can be put anywhere.
-        workspace_radius_m: How far the handle reaches from the middle of the
+        workspace_radius_m: Distance that the handle reaches from the middle of the
             workspace, m.
         max_force_N: Largest force to be shown, N: the scene's, or the preset's.
-        max_torque_Nm: Largest torque to be shown, N·m.
+        max_torque_Nm: Largest torque to be shown, N·m: the scene's, or the preset's.
     """
 
     X_WB: RigidTransform
@@ -43,7 +43,7 @@ class DevicePlacement:
 
 
 def find_device_site(scene: Scene) -> DevicePlacement:
-    """Returns where a scene has its device.
+    """Returns the place at which a scene has its device.
 
     Raises:
         SceneError: There is no such preset, or the hand's path is not valid.
@@ -66,12 +66,12 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
     """Returns the first reading of a device.
 
     Args:
-        backend: Open.
-        timeout_s: How long to wait for it, s.
+        backend: Open device.
+        timeout_s: Longest time to wait for the reading, s.
 
     Raises:
-        DeviceError: None has come, or none that could be used.
-        ValueError: Its pose is not rigid, or a number is not finite.
+        DeviceError: No reading has come, or none that could be used.
+        ValueError: The reading's pose is not rigid, or a number is not finite.
     """
     end_s = time.monotonic() + timeout_s
     while (reading := backend.read()) is None:
@@ -94,7 +94,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
 
 
 def _check_reading(reading: DeviceReading) -> None:
-    """Raises ValueError where a backend tells what no handle can do."""
+    """Raises ValueError for a reading that no handle can have."""
     for name, size in (("X_BH", 7), ("V_BH", 6)):
         values = np.asarray(getattr(reading, name), dtype=float)
         if values.shape != (size,) or not np.isfinite(values).all():
@@ -113,19 +113,20 @@ def _check_reading(reading: DeviceReading) -> None:
 def place_device(
     scene: Scene, backend: DeviceBackend, X_WH: RigidTransform | None = None
 ) -> RigidTransform:
-    """Returns X_WB, where a scene's device stands.
+    """Returns X_WB, the pose of the base of a scene's device.
 
-    Where nobody says where the base stands, the handle, wherever it is held at first,
-    is put where the scene's hand would start: beside the objects and in none.
+    Where neither the scene nor the backend gives that pose, the base is placed so that
+    the handle, wherever it is held at first, is where the scene's hand would start:
+    outside of all objects.
 
     Args:
-        scene: Says where the device stands, or does not.
-        backend: Open.
-        X_WH: Where the handle is put instead, where nobody says.
+        scene: Scene, which may give the pose of the base.
+        backend: Open device.
+        X_WH: Pose at which the handle is put instead of the start of the scene's hand.
 
     Raises:
-        SceneError: As `find_device_site`.
-        DeviceError: The backend says nothing.
+        SceneError: There is no such preset, or the hand's path is not valid.
+        DeviceError: The backend gives no usable reading.
     """
     site = find_device_site(scene)
     if scene.device.base is not None or backend.is_placed:
@@ -139,16 +140,16 @@ def place_device(
 def make_haptic_device(
     scene: Scene, backend: DeviceBackend, X_WB: RigidTransform
 ) -> tuple[HapticDevice, RigidTransform]:
-    """Returns a scene's device port before a backend, and X_WH, where its handle is.
+    """Returns a scene's device port before a backend, and the pose X_WH of its handle.
 
     Args:
-        scene: Says the rate and the limits.
-        backend: Open.
+        scene: Scene that gives the rate and the limits.
+        backend: Open device.
         X_WB: Pose of its base in the world.
 
     Raises:
-        SceneError: As `find_device_site`.
-        DeviceError: The backend says nothing.
+        SceneError: There is no such preset, or the hand's path is not valid.
+        DeviceError: The backend gives no usable reading.
     """
     site = find_device_site(scene)
     return make_device_port(
@@ -168,26 +169,26 @@ def make_device_port(
     max_force_N: float,
     max_torque_Nm: float,
 ) -> tuple[HapticDevice, RigidTransform]:
-    """Returns a device port before a backend, and X_WH, where its handle is now.
+    """Returns a device port before a backend, and the present pose X_WH of its handle.
 
-    For the `device` of `AddHapticLoop` or `AddHapticRendering`. The first reading is
-    waited for.
+    The port is for the argument `device` of `AddHapticLoop` or `AddHapticRendering`.
+    The function waits for the first reading.
 
     Args:
-        backend: Open; remains the caller's to close.
+        backend: Open device; it remains the caller's to close.
         X_WB: Pose of its base in the world. Defaults to the identity.
-        period_s: The tick, s; also that of what the port is given to.
+        period_s: The tick, s; also that of the loop or rendering that gets the port.
         max_force_N: Largest force shown, N.
         max_torque_Nm: Largest torque shown, N·m.
 
     Raises:
-        DeviceError: The backend says nothing.
+        DeviceError: The backend gives no usable reading.
         ValueError: The period or a limit is out of range, or the backend's reading is
-            no pose and velocity.
+            not a pose and velocity.
     """
     X_WB = X_WB or RigidTransform()
     reading = wait_for_reading(backend)
-    # That of a loop that was built before for this device.
+    # Ends the servo of a loop that was built before for this device.
     backend.end_contact_servo()
     io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")

@@ -36,7 +36,7 @@ class SimulatedDriverArm:
     and then follows the path.
 
     Args:
-        scene: Names device, base, grasp and hand; its rate is the driver's.
+        scene: Scene that names device, base, grasp and hand; its rate is the driver's.
 
     Raises:
         SceneError: A preset, a grip or the path is impossible.
@@ -75,7 +75,7 @@ class SimulatedDriverArm:
         return self._max_torque_Nm
 
     def start(self) -> None:
-        """Lets the hand set out."""
+        """Lets the hand start along its path."""
         self._starts = True
 
     def step(self, F_Ho_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -110,9 +110,10 @@ def make_simulated_driver(
     """Returns a driver of a scene's simulated device, within that device's limits.
 
     Args:
-        scene: What the device, its place and its hand are.
+        scene: Scene that names the device, its place and its hand.
         rate_hz: Ticks per second, Hz; the scene's if None.
-        max_ttl_s: As for `DeviceDriver`, like what follows.
+        max_ttl_s: Longest time that a command is shown without a newer one, s. This and
+            the arguments that follow are those of `DeviceDriver`.
         bind: Address to listen at.
         port: UDP port to listen at.
 
@@ -149,8 +150,9 @@ def AddLcmDriver(
     Run the diagram in real time: the time of its context is the gate's clock.
 
     Args:
-        builder: Has the arm, and Drake's `LcmInterfaceSystem` of the same `lcm`;
-            without that, call `lcm.HandleSubscriptions(0)` before each tick.
+        builder: Builder with the arm and Drake's `LcmInterfaceSystem` of the same
+            `lcm`; without the latter, call `lcm.HandleSubscriptions(0)` before each
+            tick.
         arm: A backend as `HapticDevice` documents it; its world is the base frame B.
         lcm: LCM instance to send and listen with.
         period_s: The device's tick, s.
@@ -158,7 +160,7 @@ def AddLcmDriver(
         max_torque_Nm: Largest torque ever shown, N·m.
 
     Returns:
-        The gate, whose output `gate_status` tells how it stands.
+        The gate, whose output `gate_status` tells its state.
 
     Raises:
         ValueError: The period or a limit is out of range.

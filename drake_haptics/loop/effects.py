@@ -1,7 +1,7 @@
 """Adds the systems of the effects that a scene names, and wires them.
 
-Each system is imported where it is added: what a scene does not name is not even
-loaded.
+Each system is imported where it is added: a system that a scene does not name is not
+even loaded.
 """
 
 from __future__ import annotations
@@ -35,21 +35,21 @@ _HIGHEST_LIFT_M = 0.5
 
 @dataclass(frozen=True)
 class EffectSite:
-    """The effects to add, their place in a diagram and what they are made from.
+    """The effects to add, their place in a diagram, and the data to make them from.
 
     Attributes:
-        effects: Those to add are not None.
-        builder: Gets the systems.
-        sources: What the systems' inputs are connected to, by their names; poses and
-            velocities of objects that move are left out.
+        effects: Effects to add; None marks those to leave out.
+        builder: Builder that gets the systems.
+        sources: Output ports to which the systems' inputs are connected, by the names
+            of the inputs; poses and velocities of objects that move are left out.
         tool: Pieces of the tool, in its frame T.
-        tool_mass_kg: Its mass, kg.
-        p_TTcm: Its center of mass (3,), m.
+        tool_mass_kg: Mass of the tool, kg.
+        p_TTcm: (3,) center of mass of the tool, m.
         objects: Objects that the tool meets.
-        materials: Of each object.
+        materials: Material of each object.
         period_s: The tick, s.
-        springs: What can push the device: the largest load and the stiffness of each,
-            in N and N/m or N·m and N·m/rad.
+        springs: Springs that can push the device: the largest load and the stiffness of
+            each, in N and N/m or N·m and N·m/rad.
     """
 
     effects: Effects
@@ -67,10 +67,10 @@ class EffectSite:
 def find_springs(
     device: HapticDevice, gains: _core.CouplingGains, contacts_N_per_m: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Returns the springs that push a device, as `EffectSite` wants them.
+    """Returns the springs that push a device, as `EffectSite` takes them.
 
     Args:
-        device: Its limits load them.
+        device: Device, whose limits load the springs.
         gains: Gains of the coupling.
         contacts_N_per_m: Stiffness of contact with each object, N/m; empty where
             contact stores no energy.
@@ -182,7 +182,7 @@ def _calc_reserve(site: EffectSite) -> float:
 
 
 def _add(site: EffectSite, name: str, system: System) -> System:
-    """Adds a system and connects the inputs whose names say what they want."""
+    """Adds a system and connects its inputs to the sources of their names."""
     site.builder.AddNamedSystem(name, system)
     connect_by_name(site.builder, system, site.sources)
     return system

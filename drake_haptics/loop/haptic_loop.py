@@ -35,10 +35,11 @@ class BaseSystems:
 
     Attributes:
         device: The device port.
-        virtual_coupling: Between the device's handle and the tool; under
-            `contact.law: constraint` the same system as `haptic_tool`.
-        haptic_tool: The tool's body.
-        load_shedding: Says what to leave out; None without a budget of ticks.
+        virtual_coupling: Spring and damper between the device's handle and the tool;
+            under `contact.law: constraint` the same system as `haptic_tool`.
+        haptic_tool: System of the tool's body.
+        load_shedding: System that drops work from slow ticks; None without a budget of
+            ticks.
         penalty: The systems that find contacts and answer them; None under
             `contact.law: constraint`, where `haptic_tool` does.
     """
@@ -51,17 +52,17 @@ class BaseSystems:
 
     @property
     def contact_query(self) -> ContactQuery:
-        """The system that finds contacts, of `contact.law: penalty` alone."""
+        """The system that finds contacts, only under `contact.law: penalty`."""
         return self.require_penalty().contact_query
 
     @property
     def contact_clustering(self) -> ContactClustering:
-        """The system of clusters, of `contact.law: penalty` alone."""
+        """The system of clusters, only under `contact.law: penalty`."""
         return self.require_penalty().contact_clustering
 
     @property
     def penalty_force(self) -> PenaltyForce:
-        """The system of the force, of `contact.law: penalty` alone."""
+        """The system of the force, only under `contact.law: penalty`."""
         return self.require_penalty().penalty_force
 
     @property
@@ -120,7 +121,7 @@ class BaseSystems:
         """Returns the systems of the penalty law.
 
         Raises:
-            SceneError: The loop is by the other law.
+            SceneError: The loop is under the constraint law.
         """
         if self.penalty is None:
             raise SceneError(
@@ -136,12 +137,12 @@ class EffectSystems:
     """The system of each effect; None where the scene does not name it.
 
     Attributes:
-        shading: Smooths the contacts' normals.
-        friction: Stick-slip friction; under `contact.law: constraint` the same system
-            as `haptic_tool`.
-        braking: Brakes before contact.
-        gravity: The tool's weight.
-        passivity: Takes surplus energy out of the device's wrench.
+        shading: System that smooths the contacts' normals.
+        friction: System of stick-slip friction; under `contact.law: constraint` the
+            same as `haptic_tool`.
+        braking: System that brakes before contact.
+        gravity: System of the tool's weight.
+        passivity: System that takes surplus energy out of the device's wrench.
     """
 
     shading: ForceShading | None = None
@@ -156,7 +157,7 @@ class HapticLoop(BaseSystems):
     """The systems of one haptic loop, wired.
 
     Attributes:
-        effects: Those of the effects.
+        effects: Systems of the effects.
         wrench_sources: The wrench model that feeds each input of `haptic_tool`, by
             the name of the input.
     """
@@ -177,7 +178,7 @@ class HapticLoop(BaseSystems):
 
     @property
     def commanded_wrench(self) -> OutputPort:
-        """The wrench (6) [τ; f] on its handle that the device is asked to show."""
+        """The wrench (6) [τ; f] on the handle that the device is asked to show."""
         if self.effects.passivity is not None:
             return self.effects.passivity.GetOutputPort("F_Ho_W_commanded")
         return self.virtual_coupling.GetOutputPort("F_Ho_W_commanded")
@@ -240,9 +241,9 @@ def ConnectMovingObject(
     Args:
         builder: Builder of the diagram with the loop.
         loop: Return value of `AddHapticLoop`.
-        name: Of an object without a pose of its own.
-        X_WO: Its pose (7) [qw qx qy qz x y z] in the world, m.
-        V_WO: Its spatial velocity (6) [ω; v] in the world, rad/s and m/s.
+        name: Name of an object without a pose of its own.
+        X_WO: Pose (7) [qw qx qy qz x y z] of the object in the world, m.
+        V_WO: Spatial velocity (6) [ω; v] of the object in the world, rad/s and m/s.
 
     Raises:
         ValueError: There is no such object, or it does not move.
@@ -254,7 +255,7 @@ def ConnectMovingObject(
         parts += [loop.penalty_force, loop.pose_sampler, loop.contact_extrapolator]
         if loop.pose_sampler is None:
             parts.append(loop.contact_query)
-    # Under the constraint law one system is several parts.
+    # Under the constraint law one system stands for several parts.
     systems = [part for part in dict.fromkeys(parts) if part is not None]
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
     inputs = [

@@ -35,20 +35,22 @@ def open_device(
     * `mouse:`: the mouse, over the picture of the scene
     * `replay:FILE`: the handle of a log of `run --log`
 
-    An Inverse3's may end in options, like `?max_force_N=4`: see `HaplyDevice.open`.
+    The address of an Inverse3 may end in options, like `?max_force_N=4`: see
+    `HaplyDevice.open`.
 
     Args:
-        address: One of these.
-        scene: Says where its device stands and within which limits.
-        meshcat: The page that `meshcat:` and `mouse:` need; a `NoPageError` says so.
+        address: Address in one of these forms.
+        scene: Scene that gives the place and the limits of the device.
+        meshcat: Meshcat whose page `meshcat:` and `mouse:` need; without it they raise
+            `NoPageError`.
 
     Returns:
         The device, open; it is the caller's to close.
 
     Raises:
-        DeviceError: There is no such kind of device, something is missing in the
+        DeviceError: There is no such kind of device, something is missing from the
             address, or it cannot be opened.
-        SceneError: As `find_device_site`.
+        SceneError: There is no such preset, or the hand's path is not valid.
         TickLogError: A log cannot be read.
         OSError: A log cannot be opened.
     """
@@ -97,7 +99,7 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
     """Returns host and port of an address."""
     try:
         port = parts.port or default_port
-    except ValueError as error:  # Of a port that is no number, or too large.
+    except ValueError as error:  # The port is not a number, or too large.
         raise DeviceError(f"device {parts.geturl()!r}: {error}") from error
     if not parts.hostname or port is None:
         raise DeviceError(

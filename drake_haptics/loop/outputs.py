@@ -83,7 +83,7 @@ def add_picture(
 
 
 def make_log_header(scene: Scene) -> TickLogHeader:
-    """Returns the head of a log of a run of a scene.
+    """Returns the header of the log of a scene's run.
 
     Raises:
         SceneError: The scene has no such preset or its path leaves the workspace.

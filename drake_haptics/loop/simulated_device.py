@@ -30,7 +30,7 @@ def make_hand_path(path: HandPathParameters) -> HandPath:
     """Returns the hand's path for the tool.
 
     Raises:
-        SceneError: It does not close or turns too far between two waypoints.
+        SceneError: The path does not close or turns too far between two waypoints.
     """
     poses = [Pose(w.position_m, w.rpy_deg).to_rigid_transform() for w in path.waypoints]
     try:
@@ -45,12 +45,12 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
     """Returns a scene's device as a simulated arm that a hand moves.
 
     Args:
-        scene: Names the device, the grasp and the grip.
+        scene: Scene that names the device, the grasp and the grip.
         path: Poses to which the hand moves the tool.
 
     Raises:
-        SceneError: There is no such preset or grip, the preset has no model or one
-            that is no arm, a part of the twin lacks figures, or the path leaves the
+        SceneError: There is no such preset or grip, the preset has no model or one that
+            is not an arm, a part of the twin lacks figures, or the path leaves the
             device's workspace.
     """
     device = scene.device
@@ -94,18 +94,18 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
 
 
 def find_base(scene: Scene, path: HandPath) -> RigidTransform:
-    """Returns X_WB, where the base of a scene's device stands.
+    """Returns X_WB, the pose of the base of a scene's device.
 
     Args:
-        scene: Names the device and, if it does, the place. If not, the middle of the
-            preset's workspace is put at the middle of the path.
+        scene: Scene that names the device and may give the base. If it does not, the
+            middle of the preset's workspace is put at the middle of the path.
         path: Poses to which the hand moves the tool.
     """
     return _find_base(scene, _sample_handle(scene, path)[1])
 
 
 def _find_base(scene: Scene, p_WH: np.ndarray) -> RigidTransform:
-    """Returns `find_base` for places (n, 3) of the handle on its path, m."""
+    """Returns `find_base` for positions (n, 3) of the handle on its path, m."""
     if scene.device.base is not None:
         return scene.device.base.to_rigid_transform()
     middle = (p_WH.min(axis=0) + p_WH.max(axis=0)) / 2.0
@@ -114,7 +114,7 @@ def _find_base(scene: Scene, p_WH: np.ndarray) -> RigidTransform:
 
 
 def place_base(scene: Scene, path: HandPath) -> RigidTransform:
-    """Returns `find_base`, from where the device reaches the hand's whole path.
+    """Returns `find_base`, and checks that the device reaches the hand's whole path.
 
     Raises:
         SceneError: The handle's path leaves the workspace.
@@ -134,7 +134,7 @@ def place_base(scene: Scene, path: HandPath) -> RigidTransform:
 
 
 def _sample_handle(scene: Scene, path: HandPath) -> tuple[np.ndarray, np.ndarray]:
-    """Returns times (n,), s, and where the handle would be then, (n, 3), m."""
+    """Returns times (n,), s, and the positions of the handle at them, (n, 3), m."""
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     times = np.linspace(0.0, path.duration_s, _PATH_SAMPLES)
     poses = [vector_to_pose(path.calc(t)[0]) @ X_TH for t in times]
@@ -144,7 +144,7 @@ def _sample_handle(scene: Scene, path: HandPath) -> tuple[np.ndarray, np.ndarray
 def _make_arm_twin(
     twin: DeviceImperfections, preset: DevicePreset, period_s: float
 ) -> ArmTwin | None:
-    """Returns the parts of a twin with the preset's figures, None if there is none."""
+    """Returns the parts of a twin with the preset's figures, None for no parts."""
     if twin == DeviceImperfections():
         return None
     motors = preset.motors

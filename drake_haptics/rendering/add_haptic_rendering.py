@@ -38,7 +38,7 @@ from drake_haptics.scene.schema import (
 from drake_haptics.scene.validation import SceneWarning, check_rendering
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# The tick of effects with a memory, and the longest step, without a time step, s.
+# Tick of effects with a memory, and longest step, for a plant without a time step, s.
 _DEFAULT_PERIOD_S = 1e-3
 
 
@@ -67,7 +67,7 @@ def AddHapticRendering(
     (`drake_haptics.geometry.parsing.body_shapes`). The forces go to the plant's port
     `applied_spatial_force` beside whatever else feeds it (`AddAppliedSpatialForce`).
     Bodies that are welded to the world are posed once, here, and never read again;
-    others that move feel the reaction.
+    bodies that move feel the reaction.
 
     So that no contact counts twice, a collision filter of the model excludes Drake's
     own contact between the tool and the environment, in every Context made from then
@@ -78,35 +78,36 @@ def AddHapticRendering(
     the plant's step bears (`HapticRendering.proxy_gains`).
 
     With a coupling, a spring and damper draw the tool to a handle. The handle is that
-    of `device`, which goes inside; or, without one, is given by the inputs `X_WH` and
-    `V_WH` of the result, which shows its wrench at the output `F_Ho_W_commanded`.
+    of `device`, which becomes part of the result. Without a device it is given by the
+    inputs `X_WH` and `V_WH` of the result, whose output `F_Ho_W_commanded` is the
+    wrench on the handle.
 
     Args:
         builder: Builder of the diagram with the plant; not built yet.
-        plant: Finalized, continuous or discrete.
-        scene_graph: The plant's.
-        tool_body: The body that is the tool, or its name or `model::name`.
-        environment: The bodies that it meets; all that have shapes where not given,
-            but for those that are rigidly attached to the tool and those whose contact
-            with it the model filters out already.
-        role: Which shapes are used: those for proximity or for illustration.
+        plant: Finalized plant, continuous or discrete.
+        scene_graph: Scene graph of the plant.
+        tool_body: Body that is the tool, or its name or `model::name`.
+        environment: Bodies that the tool meets. Defaults to all that have shapes, but
+            for those that are rigidly attached to the tool and those whose contact with
+            it the model filters out already.
+        role: Role of the shapes that are used: proximity or illustration.
         chord_error_m: Largest distance of polytopes from the round shapes that they
             stand for, m.
         contact: The law of contact and its parameters.
-        materials: Of bodies of the environment, by the names of their ports; what one
-            does not give is that of `contact` and `effects`.
-        effects: Effects besides contact. Gravity is the plant's own; passivity
-            control is of a device.
+        materials: Materials of bodies of the environment, by the names of their ports;
+            values that are not given are those of `contact` and `effects`.
+        effects: Effects besides contact. Gravity is the plant's own; passivity control
+            needs a device.
         coupling: Gains between a handle and the tool; None for no handle.
-        device: The handle's, not yet in a builder, as of `make_device_port`.
-        X_HT: Pose of the tool in the handle at rest; the identity where not given.
-        period_s: The tick of effects with a memory, and the device's, s; where not
-            given, the plant's time step, or 1 ms for a continuous plant. The
-            integrator of a continuous plant takes no longer steps, so that no tool
-            slower than `skin_speed_m_per_s` is in a shape before it is near it.
+        device: Device of the handle, not yet in a builder, as from `make_device_port`.
+        X_HT: Pose of the tool in the handle at rest. Defaults to the identity.
+        period_s: Tick of effects with a memory, and of the device, s. Defaults to the
+            plant's time step, or 1 ms for a continuous plant. The integrator of a
+            continuous plant takes no longer steps, so that no tool slower than
+            `skin_speed_m_per_s` is in a shape before it is near it.
         name: Name of the system in the builder.
-        progress: Called while meshes are cut with the name of the body and the share
-            done, from 0 to 1.
+        progress: Function that is called while meshes are cut, with the name of the
+            body and the share done, from 0 to 1.
 
     Returns:
         The system. Its ports are named; see `HapticRendering`.
@@ -118,9 +119,8 @@ def AddHapticRendering(
             another unit than meters.
 
     Raises:
-        ValueError: What was asked for cannot be; the message names the argument and
-            what to do. A mesh that cannot be treated is a
-            `drake_haptics.geometry.mesh.mesh.MeshError`.
+        ValueError: An argument is invalid; the message names it and says what to do. A
+            mesh that cannot be used is a `drake_haptics.geometry.mesh.mesh.MeshError`.
         TypeError: An argument is of another kind; the message names it.
     """
     require_kinds(
@@ -229,7 +229,7 @@ def _check_stiffness(
 
 
 def _find_rendering(builder: DiagramBuilder, tool: RigidBody, body: RigidBody) -> str:
-    """Returns the name of the rendering in which two bodies meet already, or none."""
+    """Returns the name of the rendering in which two bodies meet already, if any."""
     for system in builder.GetSystems():
         if not isinstance(system, HapticRendering):
             continue
@@ -255,7 +255,7 @@ def _check_rendered_once(
 def _check_builder(
     builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph, name: str
 ) -> None:
-    """Finds out what Drake would refuse, before anything is changed."""
+    """Refuses all that Drake would refuse, before anything is changed."""
     if builder.already_built():
         raise ValueError("builder: is built already; call AddHapticRendering before")
     if plant not in builder.GetSystems():
@@ -308,7 +308,7 @@ def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
 def AddAppliedSpatialForce(
     builder: DiagramBuilder, plant: MultibodyPlant, forces: OutputPort
 ) -> None:
-    """Connects forces to a plant beside all that are connected to it already.
+    """Connects forces to a plant beside those that are connected to it already.
 
     Where the plant's port `applied_spatial_force` is free, this is `Connect`. Where
     something feeds it, such as another `AddHapticRendering`, a thruster, or the mouse
@@ -317,12 +317,13 @@ def AddAppliedSpatialForce(
 
     Args:
         builder: Builder of the diagram with the plant.
-        plant: Finalized.
-        forces: A list of `ExternallyAppliedSpatialForce`, of a system in the builder.
+        plant: Finalized plant.
+        forces: Output port of a system in the builder, a list of
+            `ExternallyAppliedSpatialForce`.
 
     Raises:
-        ValueError: The port is an input of the diagram itself, to which nothing can be
-            connected any more.
+        ValueError: The port is exported as an input of the diagram, so that nothing
+            else can be connected to it.
     """
     port = plant.get_applied_spatial_force_input_port()
     earlier = find_applied_force(builder, plant)
@@ -342,10 +343,11 @@ def AddAppliedSpatialForce(
 def find_applied_force(
     builder: DiagramBuilder, plant: MultibodyPlant
 ) -> OutputPort | None:
-    """Returns what feeds a plant's port `applied_spatial_force` so far.
+    """Returns the output that feeds a plant's port `applied_spatial_force` so far.
 
     Raises:
-        ValueError: As `AddAppliedSpatialForce`.
+        ValueError: The port is exported as an input of the diagram; see
+            `AddAppliedSpatialForce`.
     """
     port = plant.get_applied_spatial_force_input_port()
     if not builder.IsConnectedOrExported(port):

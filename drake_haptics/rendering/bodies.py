@@ -30,11 +30,12 @@ class RenderedBody:
     """A body of a plant with its contact pieces.
 
     Attributes:
-        name: Of its ports: that of the body, with its model instance where two of
-            those that take part are called the same.
+        name: Name in the ports: that of the body, with its model instance where two of
+            the rendered bodies have the same name.
         body: Body of the plant. Its frame is that of the pieces.
-        pieces: Its shapes.
-        X_WB: Its pose, if it is welded to the world; None where it can move.
+        pieces: Convex pieces of its shapes.
+        X_WB: Pose of the body in the world, if it is welded to the world; None where it
+            can move.
     """
 
     name: str
@@ -52,12 +53,12 @@ def find_body(plant: MultibodyPlant, body: RigidBody | str, argument: str) -> Ri
     """Returns the body that is given as a `Body`, a name, or `model::name`.
 
     Args:
-        plant: Has the body.
-        body: Which one.
-        argument: What to call it in messages.
+        plant: Plant of the body.
+        body: Body, its name, or `model::name`.
+        argument: Name of the argument in messages.
 
     Raises:
-        ValueError: There is none, there are several, or it is of another plant.
+        ValueError: There is no such body, there are several, or it is of another plant.
     """
     if isinstance(body, RigidBody):
         if int(body.index()) >= plant.num_bodies() or (
@@ -108,10 +109,10 @@ def make_rendered_bodies(
     chord_error_m: float,
     progress: Callable[[str, float], None] | None,
 ) -> tuple[RenderedBody, list[RenderedBody]]:
-    """Returns the tool and what it meets, with their pieces.
+    """Returns the tool and the objects that it meets, with their pieces.
 
     Raises:
-        ValueError: There is nothing to meet, the tool cannot move, a body of the
+        ValueError: There is no object to meet, the tool cannot move, a body of the
             environment is rigidly attached to it or named twice, or a body's shapes
             cannot be used
             (`drake_haptics.geometry.parsing.body_shapes.decompose_body`).
@@ -172,12 +173,13 @@ def exclude_own_contact(
     tool: RigidBody,
     environment: Sequence[RigidBody],
 ) -> list[str]:
-    """Keeps the plant's own contact from acting between the tool and what is rendered.
+    """Keeps the plant's own contact from acting between the tool and rendered bodies.
 
     Args:
         plant: Plant of the bodies.
-        scene_graph: Its collision filters are changed, in the model.
-        tool: The tool.
+        scene_graph: Scene graph of the plant, whose collision filters are changed, in
+            the model.
+        tool: Body that is the tool.
         environment: Bodies that are rendered.
 
     Returns:
@@ -223,5 +225,5 @@ def _is_filtered(
         for a in find_body_geometries(plant, inspector, tool)
         for b in find_body_geometries(plant, inspector, body)
     ]
-    # Bodies that are only drawn have no pairs: nobody has left them out.
+    # Bodies that are only drawn have no pairs: no filter leaves them out.
     return bool(pairs) and all(inspector.CollisionFiltered(a, b) for a, b in pairs)

@@ -1,4 +1,4 @@
-"""Asks about bodies whose unit or stiffness is probably wrong for haptic rendering."""
+"""Finds bodies whose unit or stiffness is probably wrong for haptic rendering."""
 
 from __future__ import annotations
 
@@ -40,12 +40,13 @@ def check_rendering_stiffness(
         plant: Plant of the bodies.
         tool: The body that is moved.
         objects: Objects that the tool meets.
-        contact: Gains.
-        materials: Of each object; gains that one does not give are those of `contact`.
+        contact: Gains of contact.
+        materials: Material of each object; gains that it does not give are those of
+            `contact`.
         coupling: Gains between a handle and the tool, if there is one.
 
     Returns:
-        A sentence for each bound that is broken. None for a continuous plant.
+        A sentence for each bound that is broken; empty for a continuous plant.
     """
     if plant.time_step() == 0.0:
         return []
@@ -103,10 +104,10 @@ def _check_coupling(
 def question_rendered_sizes(
     tool: RenderedBody, objects: Sequence[RenderedBody], tolerance_m: float
 ) -> list[str]:
-    """Asks for the unit of bodies that are unlike anything that a hand touches.
+    """Questions the unit of bodies whose size is unlike anything that a hand touches.
 
-    A file in millimeters that is read as meters is a thousand times too large. What the
-    tool meets may be as large as it likes: a ground is.
+    A file in millimeters that is read as meters is a thousand times too large. An
+    object that the tool meets may be of any large size, as a ground is.
 
     Args:
         tool: The body that is moved.

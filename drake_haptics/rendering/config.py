@@ -24,7 +24,7 @@ from drake_haptics.scene.validation import require
 from drake_haptics.scene.yaml_loading import check_keys, load_yaml
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# Drake reads the types of the fields at run time, so that annotations are no strings.
+# Drake reads the types of the fields at run time, so annotations must not be strings.
 _ROLES = {"proximity": Role.kProximity, "illustration": Role.kIllustration}
 
 
@@ -34,14 +34,14 @@ class HapticRenderingConfig:
 
     Attributes:
         tool_body: Name of the body that is the tool, or `model::name`.
-        environment: Names of the bodies that it meets. Defaults to all that have
-            shapes and can meet the tool.
-        role: Which shapes are used, `proximity` or `illustration`.
+        environment: Names of the bodies that the tool meets. Defaults to all that have
+            shapes and can meet it.
+        role: Role of the shapes that are used, `proximity` or `illustration`.
         chord_error_m: Largest distance of polytopes from the round shapes that they
             stand for, m.
         contact: The law of contact and its parameters.
         materials: Materials of bodies of the environment, by the names of their ports.
-        effects: What is felt besides contact.
+        effects: Effects besides contact.
         coupling: Gains between a handle and the tool. Defaults to no handle.
         X_HT: Pose of the tool in the handle at rest.
         period_s: Tick of effects with a memory, and of the device, s. Defaults to the
@@ -104,19 +104,19 @@ def ApplyHapticRenderingConfig(
     """Adds haptic rendering as a configuration says, by `AddHapticRendering`.
 
     Args:
-        config: Made in code, or read by `load_haptic_rendering_config`.
+        config: Configuration, made in code or read by `load_haptic_rendering_config`.
         builder: Builder of the diagram with the plant; not built yet.
         plant: Finalized plant, continuous or discrete.
         scene_graph: Scene graph of the plant.
-        device: Device of the handle, not yet in a builder, as of `make_device_port`.
-        progress: Called while meshes are cut with the name of the body and the share
-            done, from 0 to 1.
+        device: Device of the handle, not yet in a builder, as from `make_device_port`.
+        progress: Function that is called while meshes are cut, with the name of the
+            body and the share done, from 0 to 1.
 
     Returns:
         The system. Its ports are named; see `HapticRendering`.
 
     Warns:
-        SceneWarning: For the reasons of `AddHapticRendering`.
+        SceneWarning: One of the reasons that `AddHapticRendering` lists.
 
     Raises:
         ValueError: A value is impossible, as in `AddHapticRendering`; the message names

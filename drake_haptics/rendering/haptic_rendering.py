@@ -59,13 +59,13 @@ class HapticRendering(Diagram):
     * `X_WT` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
       frames in the world, m; `V_WT` and `V_WO_<name>` (6) their spatial velocities
       [ω; v] at the frame's origin in the world, rad/s and m/s.
-    * `X_WP` (7) and `V_WP` (6) are those of the proxy.
+    * `X_WP` (7) and `V_WP` (6) are the pose and the velocity of the proxy.
     * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
       `clusters` a `drake_haptics._core.ClusterSet`.
     * `F_To_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
       world, N·m and N, without coupling and effects; `F_O_W` (6 for each body that
-      moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`.
-      By the constraint law all of them are the proxy's, as of `ConstraintToolStep`.
+      moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`. By the
+      constraint law all of them are the proxy's, as in `ConstraintToolStep`.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show on the handle at its origin in
       the world, N·m and N; `X_WH`, `V_WH`, `F_Ho_W_rendered` and `status` are those of
       `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
@@ -74,12 +74,12 @@ class HapticRendering(Diagram):
     By the constraint law contact stops a light proxy in the body's place, and a handle
     holds the proxy. The body sinks in by its load divided by the stiffness of
     `proxy_gains`. `Simulator.Initialize` puts the proxy where the body is. In a
-    continuous plant what acts on the proxy is held for a tick. All else is a function
-    of the plant's state now: there is no sample of delay.
+    continuous plant the wrenches on the proxy are held for a tick. All else is a
+    function of the plant's state now: there is no sample of delay.
 
     By the penalty law, above `skin_speed_m_per_s` a step may carry the tool from beyond
-    the tolerance into a shape: it is met all the same, but as deep as the step has
-    taken it. Once a contact is deeper than ten tolerances there is a
+    the tolerance into a shape: contact is found all the same, but as deep as the step
+    has taken the tool. Once a contact is deeper than ten tolerances there is a
     `drake_haptics.scene.validation.SceneWarning`, the first time only.
     """
 
@@ -102,13 +102,14 @@ class HapticRendering(Diagram):
             tool: The body that is moved.
             objects: Objects that the tool meets.
             contact: The law of contact and its parameters.
-            materials: Of each object.
+            materials: Material of each object.
             effects: Effects besides contact.
             coupling: Gains between a handle and the tool; None for no handle.
-            device: The handle's, if it is to be inside; not yet in a builder.
+            device: Device of the handle, not yet in a builder; None where inputs give
+                the handle.
             X_HT: Pose of the tool in the handle at rest.
-            period_s: The tick of effects with a memory, and the longest step of a
-                continuous plant's integrator, s.
+            period_s: Tick of effects with a memory, and longest step of a continuous
+                plant's integrator, s.
 
         Raises:
             ValueError: A gain or size is out of range, or an effect or the device
@@ -151,15 +152,15 @@ class HapticRendering(Diagram):
 
     @property
     def objects(self) -> tuple[RenderedBody, ...]:
-        """The objects that it meets, in the order of `ContactSet.object_index`."""
+        """Objects that the tool meets, in the order of `ContactSet.object_index`."""
         return self._objects
 
     @property
     def proxy_gains(self) -> CouplingGains | None:
-        """What draws the body to its proxy; None by the penalty law.
+        """Gains of the spring from the body to its proxy; None under the penalty law.
 
-        As stiff as its step bears with a margin, by the body's inertia in the plant's
-        default positions and that of the lightest object:
+        They are as stiff as the plant's step bears with a margin, given the inertia of
+        the body in the plant's default positions and that of the lightest object:
         `drake_haptics.rendering.proxy.calc_proxy_gains`.
         """
         return self._proxy_gains
@@ -179,7 +180,7 @@ def _check_effects(
     coupling: CouplingParameters | None,
     device: HapticDevice | None,
 ) -> None:
-    """Refuses what would mean nothing, or something false."""
+    """Refuses effects that would do nothing, or would do something wrong."""
     if device is not None and coupling is None:
         raise ValueError(
             "device: needs a coupling to the tool; give coupling=CouplingParameters()"

@@ -26,7 +26,7 @@ from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Ma
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
 
-# Of the proxy, as a share of the apparent mass of the body.
+# Mass of the proxy, as a share of the apparent mass of the body.
 _MASS = 1e-3
 
 
@@ -42,11 +42,11 @@ def make_proxy_step(
 
     Args:
         tool: The body that is moved.
-        objects: Objects that it meets.
-        contact: Of the constraint law.
-        materials: Of each object.
+        objects: Objects that the tool meets.
+        contact: Contact parameters under the constraint law.
+        materials: Material of each object.
         period_s: The tick: a discrete plant's step, s.
-        wrench_name: Of the input of another wrench on the proxy.
+        wrench_name: Name of the input of another wrench on the proxy.
     """
     plant = tool.body.GetParentPlant()
     mass, inertia = calc_apparent_inertia(plant, tool, objects)
@@ -67,14 +67,14 @@ def make_proxy_step(
 def calc_proxy_gains(mass: float, inertia: float, step_s: float) -> CouplingGains:
     """Returns the spring between a body and its proxy: K = m/h².
 
-    A mass m that comes to a wall is stopped by it in one step, for the spring's force
-    is taken where the mass would be after the step. That is a damper K h beside the
-    spring: stable is K <= (4 m - 2 (K h) h)/h², 4/3 of this
+    It stops a mass m at a wall in one step, since the spring's force is taken where the
+    mass would be after the step. That acts as a damper K h beside the spring, which is
+    stable for K <= (4 m - 2 (K h) h)/h², 4/3 of this
     (`drake_haptics.bounds.explicit_step.calc_explicit_stiffness`).
 
     Args:
-        mass: What it moves, kg.
-        inertia: What it turns, kg·m².
+        mass: Mass that the spring moves, kg.
+        inertia: Inertia that the spring turns, kg·m².
         step_s: The step h, s.
     """
     return CouplingGains(mass / step_s**2, 0.0, inertia / step_s**2, 0.0)
@@ -83,24 +83,24 @@ def calc_proxy_gains(mass: float, inertia: float, step_s: float) -> CouplingGain
 def calc_apparent_inertia(
     plant: MultibodyPlant, tool: RenderedBody, objects: Sequence[RenderedBody]
 ) -> tuple[float, float]:
-    """Returns the least mass (kg) and inertia (kg·m²) between which a proxy pulls.
+    """Returns the least mass (kg) and inertia (kg·m²) that a proxy's spring feels.
 
     With a spring of K = k m in translation and k I in rotation, the largest eigenvalue
     of K J M⁻¹ Jᵀ is at most k: a symmetric matrix is at most as large as both of its
     diagonal blocks together, which is why each counts twice. An object that gives way
-    does so beside the body.
+    adds its mobility to the body's.
 
     Args:
         plant: Plant of the bodies, in its default positions.
         tool: The body that is moved.
-        objects: Objects that it meets.
+        objects: Objects that the tool meets.
     """
     mobility = calc_spatial_mobility(plant, tool.body)
     turning = float(np.linalg.norm(mobility[:3, :3], 2))
     moving = float(np.linalg.norm(mobility[3:, 3:], 2))
     p_TV = np.asarray(tool.pieces.vertices)
     size_m = float(np.linalg.norm(p_TV, axis=1).max())
-    # What cannot turn, or only turn, has a radius of gyration of its own size.
+    # A body that cannot turn, or can only turn, has its own size as radius of gyration.
     square_m2 = moving / turning if moving and turning else size_m**2
     moving = max(moving, turning * square_m2)
     giving = max(
@@ -119,12 +119,12 @@ def check_handle(
     """Checks that a handle holds a proxy no more stiffly than its body does.
 
     Up to a stiffness of 0.9 K and a damping of K h, K being the proxy's, handle, proxy
-    and body are stable together, though both take what the handle pulls with as it is
-    at the start of a step.
+    and body are stable together, though both take the pull of the handle as it is at
+    the start of a step.
 
     Args:
-        coupling: Of the handle and the proxy.
-        proxy: Of the proxy and the body.
+        coupling: Gains between the handle and the proxy.
+        proxy: Gains between the proxy and the body.
         step_s: The step h, s.
 
     Returns:

@@ -37,8 +37,9 @@ class RenderingWiring:
 
     Attributes:
         builder: Builder of its diagram.
-        outputs: What it will export, by name.
-        proxy_gains: What draws the tool to its proxy; None by the penalty law.
+        outputs: Output ports that the rendering will export, by name.
+        proxy_gains: Gains of the spring that draws the tool to its proxy; None under
+            the penalty law.
     """
 
     def __init__(
@@ -130,7 +131,7 @@ class RenderingWiring:
         materials: Sequence[Material],
         period_s: float,
     ) -> None:
-        """Adds the proxy that contact stops, and what draws the body to it."""
+        """Adds the proxy that contact stops, and the spring from the body to it."""
         step_s = self._tool.body.GetParentPlant().time_step()
         body = self.builder.AddNamedSystem(
             "body_of_proxy", BodyOfProxy(step_s or period_s)
@@ -158,7 +159,7 @@ class RenderingWiring:
         }
 
         def hold(wrench: OutputPort) -> OutputPort:
-            # A discrete plant does so itself.
+            # A discrete plant holds its inputs itself.
             if step_s:
                 return wrench
             held = self.builder.AddNamedSystem(
@@ -180,8 +181,8 @@ class RenderingWiring:
     ) -> None:
         """Adds the coupling to a handle: that of a device, or given by inputs.
 
-        It holds what contact stops: the tool by the penalty law, else its proxy. The
-        damper is the tool's in both cases: a proxy has no mass to damp.
+        It holds the body that contact stops: the tool under the penalty law, else its
+        proxy. The damper acts on the tool in both cases: a proxy has no mass to damp.
         """
         coupling = self.builder.AddNamedSystem(
             "virtual_coupling", VirtualCoupling(gains, X_HT)
@@ -204,8 +205,8 @@ class RenderingWiring:
                 coupling.GetInputPort("X_WH"),
                 coupling.GetInputPort("V_WH"),
             ):
-                # Drake names the system whose input nobody has connected; through a
-                # `PassThrough` there would be NaN.
+                # Drake's error names the system whose input is not connected; a
+                # `PassThrough` would give NaN.
                 named = self.builder.AddNamedSystem(
                     port.get_name(), Multiplexer([port.size()])
                 )
@@ -219,7 +220,7 @@ class RenderingWiring:
     def add_effects(
         self, effects: Effects, materials: Sequence[Material], period_s: float
     ) -> None:
-        """Adds the effects that are named, after contact and coupling."""
+        """Adds the effects that are not None, after contact and coupling."""
         added = add_effects(
             EffectSite(
                 effects=effects,

@@ -10,15 +10,15 @@ from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.scene.yaml_loading import make_hint
 
 LARGEST_DEFAULT_SKIN_M = 3e-4
-"""Skin where none is given and nothing is tight, m."""
+"""Default skin where the hand's path leaves enough play, m."""
 _LAWS = ("penalty", "constraint")
-# Effects that act on the springs of the penalty law, and a material's gains of these.
+# Effects and material gains that act on the springs of the penalty law.
 _OF_PENALTY = ("shading", "braking")
 _GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
 
 
 def is_constraint(contact: ContactParameters) -> bool:
-    """Returns whether contact is by constraints on the tool's step, not by springs."""
+    """Returns whether constraints on the tool's step answer contact, not springs."""
     return contact.law == "constraint"
 
 
@@ -46,16 +46,16 @@ def check_constraint_law(
     sheds_load: bool,
     materials: Mapping[str, Material],
 ) -> None:
-    """Refuses what does nothing under the constraint law.
+    """Refuses keys that do nothing under the constraint law.
 
     Args:
-        contact: Of that law.
-        effects: As in a scene.
+        contact: Contact parameters under that law.
+        effects: Effects, as in a scene.
         sheds_load: Whether ticks have a budget.
-        materials: Of the objects, by the keys where they stand.
+        materials: Materials of the objects, by their keys in messages.
 
     Raises:
-        SceneError: Something is asked for that this law does not have; it says what to
+        SceneError: A key is given that this law does not have; the message says what to
             do.
     """
     asked = {f"effects.{name}": getattr(effects, name) for name in _OF_PENALTY}
@@ -73,14 +73,14 @@ def check_constraint_law(
 
 
 def require_penalty(contact: ContactParameters, what: str) -> None:
-    """Refuses the constraint law where only the other one can be treated.
+    """Refuses the constraint law where only the penalty law is supported.
 
     Args:
-        contact: Of a scene.
-        what: What is asked for, as the subject of a sentence.
+        contact: Contact parameters of a scene.
+        what: Subject and verb of the message, like "errors and knobs are".
 
     Raises:
-        SceneError: Contact is by constraints.
+        SceneError: The law is the constraint law.
     """
     if is_constraint(contact):
         raise SceneError(
@@ -90,13 +90,13 @@ def require_penalty(contact: ContactParameters, what: str) -> None:
 
 
 def question_overlap(depth_m: float) -> str:
-    """Asks about an overlap under the constraint law, which keeps surfaces apart.
+    """Returns a warning of an overlap under the constraint law.
 
     Args:
         depth_m: Depth of the deepest contact, m; not positive if none penetrates.
 
     Returns:
-        A sentence if there is one; nothing if not.
+        The warning, a sentence; empty if no contact penetrates.
     """
     if not depth_m > 0.0:
         return ""

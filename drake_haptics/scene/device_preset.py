@@ -1,4 +1,4 @@
-"""Device presets: limits, workspace and model of a device, in files of YAML."""
+"""Device presets: limits, workspace and model of a device, in YAML files."""
 
 from copy import deepcopy
 from dataclasses import dataclass, field
@@ -32,15 +32,15 @@ def _make_identity() -> list[list[float]]:
 class Motors:
     """Properties of a device's motors, six of each, in the order of the joints.
 
-    All angles and torques are after the gear. What is None is unknown.
+    All angles and torques are after the gear. A property that is None is unknown.
 
     Attributes:
-        joint_per_motor: S (6, 6) in q = S q_motor with q the joints of the model, so
-            that τ_motor = Sᵀ τ.
-        encoder_step_rad: Angle per count, rad.
-        coulomb_friction_Nm: N·m.
-        peak_torque_Nm: N·m.
-        continuous_torque_Nm: What they bear without end, N·m.
+        joint_per_motor: S (6, 6) in q = S q_motor, with q the joint angles of the
+            model, so that τ_motor = Sᵀ τ.
+        encoder_step_rad: Angle per count of the encoder, rad.
+        coulomb_friction_Nm: Dry friction torque, N·m.
+        peak_torque_Nm: Peak torque, N·m.
+        continuous_torque_Nm: Torque that the motors bear without end, N·m.
     """
 
     joint_per_motor: list[list[float]] = field(default_factory=_make_identity)
@@ -55,23 +55,24 @@ class DevicePreset:
     """The properties of a device.
 
     Attributes:
-        description: For people.
-        source: Where the figures are from.
-        model: SDF of its arm, relative to the preset's file; empty if there is none.
-            Its root link is `base`, from which six revolute joints lead to:
-        handle_link: The link that is held.
+        description: One sentence that describes the device.
+        source: Source of the figures.
+        model: SDF file of the arm, relative to the preset's file; empty if there is no
+            model. Its root link is `base`, from which six revolute joints lead to
+            `handle_link`.
+        handle_link: Link of the arm that the hand holds.
         workspace_center_m: Middle of the workspace in the frame of the base, m.
         workspace_radius_m: Radius of the workspace, m.
-        actuated_axes: How many of the handle's six axes have motors: 6, or 3 where
+        actuated_axes: Number of the handle's six axes that have motors: 6, or 3 where
             it turns freely.
         max_force_N: Largest force it shows, N.
         max_torque_Nm: Largest torque it shows, N·m; 0 where it turns freely.
-        max_stiffness_N_per_m: Largest stiffness it is rated for, N/m. This and what
-            follows may be unknown.
+        max_stiffness_N_per_m: Largest stiffness that the device is rated for, N/m. This
+            and the ratings that follow may be unknown.
         max_damping_Ns_per_m: Largest damping, N·s/m.
-        max_rotational_stiffness_Nm_per_rad: N·m/rad.
-        max_rotational_damping_Nms_per_rad: N·m·s/rad.
-        motors: Figures that the parts of a scene's `device.twin` take.
+        max_rotational_stiffness_Nm_per_rad: Largest rotational stiffness, N·m/rad.
+        max_rotational_damping_Nms_per_rad: Largest rotational damping, N·m·s/rad.
+        motors: Figures of the motors, the defaults of a scene's `device.twin`.
     """
 
     description: str = ""
@@ -91,7 +92,7 @@ class DevicePreset:
 
     @property
     def has_model(self) -> bool:
-        """Tells whether it can be simulated."""
+        """Tells whether the device can be simulated."""
         return bool(self.model)
 
     @property
@@ -99,7 +100,7 @@ class DevicePreset:
         """File of the arm's model.
 
         Raises:
-            SceneError: It has none; says what to do.
+            SceneError: The preset has no model; the message says what to do.
         """
         if not self.has_model:
             raise SceneError(
@@ -131,9 +132,9 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
         The preset, whose `model` no longer depends on its folder.
 
     Raises:
-        SceneError: No preset has that name, in which case the message lists those
-            there are; or the file cannot be read, or has a key or value that means
-            nothing: it names the file and the key.
+        SceneError: No preset has that name, and the message lists the shipped ones; or
+            the file cannot be read, or has a key or value that means nothing, and the
+            message names the file and the key.
     """
     if is_preset_file(name_or_path):
         return _read_once(Path(name_or_path))
@@ -147,7 +148,7 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
 
 
 def _read_once(path: Path) -> DevicePreset:
-    """Reads a file that was not read before as it is now, and returns a copy."""
+    """Returns a copy of a preset; reads its file only if it has changed."""
     try:
         stat = path.stat()
     except OSError:
@@ -202,7 +203,7 @@ def _check_values(preset: DevicePreset) -> None:
 
 
 def _check_transmission(rows: list[list[float]]) -> None:
-    """Raises SceneError unless motors and joints tell of each other."""
+    """Raises SceneError unless motor and joint angles determine each other."""
     where = "motors.joint_per_motor"
     require(
         len(rows) == NUM_JOINTS and all(len(row) == NUM_JOINTS for row in rows),

@@ -31,14 +31,15 @@ def cut_scene(
     """Returns the pieces of a scene's tool, and of each object in its order.
 
     Args:
-        scene: Names meshes and methods.
-        known: Pieces that there are: what is to be cut in the same way is taken from
-            them as it is.
-        progress: Called with the name of the object and the share done in [0, 1].
+        scene: Scene that names meshes and methods.
+        known: Tools and objects that are cut already, with their pieces. Whatever would
+            be cut in the same way takes these pieces.
+        progress: Function that is called with the name of the object and the share done
+            in [0, 1].
 
     Raises:
         SceneError: A key of a mesh means nothing for it.
-        MeshError: A mesh cannot be treated.
+        MeshError: A mesh cannot be used.
     """
 
     def cut(name: str, item: Tool | EnvironmentObject) -> Decomposition:
@@ -59,7 +60,7 @@ def cut_scene(
 
 
 def _describe_cut(item: Tool | EnvironmentObject) -> tuple[object, ...]:
-    """Returns all that the pieces of an object come of."""
+    """Returns all values that determine the pieces of an object."""
     return (
         item.mesh,
         item.scale,
@@ -72,7 +73,7 @@ def _describe_cut(item: Tool | EnvironmentObject) -> tuple[object, ...]:
 
 
 def _load_mesh(item: Tool | EnvironmentObject) -> Mesh:
-    """Reads the mesh of an object of a scene, as exact as the scene asks for."""
+    """Reads the mesh of an object of a scene, as exactly as the scene asks for."""
     if is_model_file(item.mesh):
         chord_error_m = item.chord_error_m or DEFAULT_CHORD_ERROR_M
         mesh = load_model_mesh(

@@ -9,7 +9,7 @@ from drake_haptics.common.errors import HapticsError, MeshError, SceneError
 from drake_haptics.common.files import describe_missing
 from drake_haptics.models import FOLDER
 
-# Given for a scene by mistake; any other name may be a scene's.
+# Files that are given for a scene by mistake; any other name may be a scene's.
 _MESH_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".npz")
 
 
@@ -19,7 +19,7 @@ def list_scenes() -> dict[str, Path]:
 
 
 def list_meshes() -> dict[str, Path]:
-    """Returns the file of every shipped mesh by name, in order of name; all in m."""
+    """Returns the file of every shipped mesh, in meters, by name, in order of name."""
     return {path.stem: path for path in sorted((FOLDER / "meshes").glob("*.obj"))}
 
 
@@ -27,7 +27,7 @@ def find_scene(name_or_path: str) -> Path:
     """Returns the file of a shipped scene's name, or the path itself.
 
     Raises:
-        SceneError: It is neither; the message lists the shipped names.
+        SceneError: There is no such scene or file; the message lists the shipped names.
     """
     if Path(name_or_path).suffix.lower() in _MESH_SUFFIXES:
         raise SceneError(
@@ -38,10 +38,10 @@ def find_scene(name_or_path: str) -> Path:
 
 
 def find_mesh(name_or_path: str) -> Path:
-    """Returns the file of a shipped mesh's name, as "cup", or the path itself.
+    """Returns the file of a shipped mesh's name, like "cup", or the path itself.
 
     Raises:
-        MeshError: It is neither; the message lists the shipped names.
+        MeshError: There is no such mesh or file; the message lists the shipped names.
     """
     return _find("mesh", name_or_path, list_meshes(), MeshError)
 

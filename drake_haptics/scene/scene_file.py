@@ -31,9 +31,9 @@ def load_scene(path: str | Path) -> Scene:
         The scene, with paths that no longer depend on the folder.
 
     Raises:
-        SceneError: The file cannot be read, has a key or a value that means
-            nothing, names a mesh that is not there, or describes something
-            physically impossible. The message names the file and the key.
+        SceneError: The file cannot be read, has a key or a value that means nothing,
+            names a mesh that does not exist, or describes something physically
+            impossible. The message names the file and the key.
     """
     path = Path(path)
     if str(path) in list_scenes() and not path.exists():
@@ -53,15 +53,15 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) -> None:
-    """Writes all of a scene, defaults too.
+    """Writes a whole scene, including its defaults.
 
     Meshes and presets of this package and of Drake are named `package://...`, those
     below the file's folder relative to it, others by their whole path.
 
     Args:
-        scene: From `load_scene`, or with such paths.
+        scene: Scene from `load_scene`, or one with paths like its paths.
         path: Path of the file, which is replaced.
-        comments: Lines for people, at its head.
+        comments: Comment lines at the head of the file.
 
     Raises:
         OSError: The file cannot be written.
@@ -80,7 +80,7 @@ def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) ->
 
 
 def _name_file(file: str, folder: Path) -> str:
-    """Returns how a file is named in a scene file of a folder."""
+    """Returns the name of a file in a scene file of a folder."""
     if file.startswith("package://"):
         return file
     whole = Path(file).resolve()
@@ -91,21 +91,21 @@ def _name_file(file: str, folder: Path) -> str:
 
 
 def _list_places(folder: Path) -> Iterator[tuple[Path, str]]:
-    """Yields folders with what a file in them is named by."""
+    """Yields folders, each with the prefix by which files in it are named."""
     yield FOLDER, _SHIPPED
     yield Path(PackageMap().GetPath("drake")), "package://drake/"
     yield folder, ""
 
 
 def place_files(scene: Scene, folder: Path) -> None:
-    """Makes the paths of a scene's meshes and preset hold from any folder.
+    """Makes the paths of a scene's meshes and preset valid from any folder.
 
     Args:
-        scene: Is changed.
+        scene: Scene to change in place.
         folder: Folder at which relative paths begin.
 
     Raises:
-        SceneError: A mesh is not there, or no package has that name.
+        SceneError: A mesh does not exist, or no package has that name.
     """
     parts: dict[str, Tool | EnvironmentObject] = {"tool": scene.tool}
     parts |= {f"environment[{i}]": item for i, item in enumerate(scene.environment)}
@@ -119,7 +119,7 @@ def place_files(scene: Scene, folder: Path) -> None:
 
 
 def _find_absolute(where: str, file: str, folder: Path) -> str:
-    """Returns the path of a file that holds from any folder."""
+    """Returns a path of a file that is valid from any folder."""
     try:
         resolved = resolve_package_url(file)
     except MeshError as error:

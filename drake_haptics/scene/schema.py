@@ -1,4 +1,4 @@
-"""Defines a scene: what is held, what it meets, who holds it, and with which gains.
+"""Defines a scene: the device, the tool, the objects, the hand, and all gains.
 
 A scene is a YAML file read into the dataclasses below. Every field has its unit
 in its name or its docstring, every default works, and an unknown key is an error.
@@ -13,17 +13,18 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 @dataclass(slots=True)
 class Material:
-    """The material of an object; values that are not given are the scene's.
+    """Contact properties of an object; values that are not given are the scene's.
 
     Attributes:
-        stiffness_N_per_m: Instead of `contact.stiffness_N_per_m`, N/m; of
-            `contact.law: penalty` alone.
-        damping_Ns_per_m: Instead of `contact.damping_Ns_per_m`, N·s/m; of
-            `contact.law: penalty` alone.
-        friction_coefficient: Instead of `effects.friction.coefficient`; the scene
-            must name that effect.
-        shading: Whether the object is shaded; the scene must name that effect.
-        skin_m: Instead of `contact.skin_m`, m.
+        stiffness_N_per_m: Stiffness of contact with the object, N/m, in place of
+            `contact.stiffness_N_per_m`; only under `contact.law: penalty`.
+        damping_Ns_per_m: Damping of contact with the object, N·s/m, in place of
+            `contact.damping_Ns_per_m`; only under `contact.law: penalty`.
+        friction_coefficient: Friction coefficient of the object, in place of
+            `effects.friction.coefficient`; the scene must name that effect.
+        shading: Whether the object is shaded; the scene must name `effects.shading`.
+        skin_m: Distance that the tool keeps from the object, m, in place of
+            `contact.skin_m`.
     """
 
     stiffness_N_per_m: float | None = None
@@ -50,9 +51,9 @@ class FrictionParameters:
     """Stick-slip friction.
 
     Attributes:
-        coefficient: Friction per normal force, of all objects whose material has
-            none of its own.
-        break_away_m: How far a contact that sticks gives way before it slips, m.
+        coefficient: Ratio of friction to normal force, for all objects whose material
+            gives none.
+        break_away_m: Distance that a sticking contact gives way before it slips, m.
     """
 
     coefficient: float = 0.3
@@ -65,8 +66,8 @@ class BrakingParameters:
 
     Attributes:
         damping_Ns_per_m: Force per speed of approach at the surface, N·s/m.
-        distance_m: Where braking begins, m. Contacts are looked for that far, if it
-            is more than `contact.tolerance_m`.
+        distance_m: Distance at which braking begins, m. Contacts are searched for up to
+            this distance if it is more than `contact.tolerance_m`.
     """
 
     damping_Ns_per_m: float = 2.0
@@ -78,7 +79,7 @@ class GravityParameters:
     """The tool's weight.
 
     Attributes:
-        acceleration_m_per_s2: In the world, m/s².
+        acceleration_m_per_s2: Acceleration of gravity in the world, m/s².
     """
 
     acceleration_m_per_s2: list[float] = field(
@@ -92,9 +93,11 @@ class PassivityParameters:
 
     Attributes:
         max_damping_Ns_per_m: Largest damping that is added, N·s/m.
-        max_rotational_damping_Nms_per_rad: The same about an axis, N·m·s/rad.
-        reserve_J: Largest energy that is taken for the world's own, J; where not
-            given, that of the scene's springs at the device's limits and of the tool.
+        max_rotational_damping_Nms_per_rad: Largest rotational damping that is added,
+            N·m·s/rad.
+        reserve_J: Largest energy that the virtual world is allowed to give back, J.
+            Defaults to the energy of the scene's springs at the device's limits and of
+            the tool.
     """
 
     max_damping_Ns_per_m: float = 20.0
@@ -104,16 +107,16 @@ class PassivityParameters:
 
 @dataclass(slots=True)
 class Effects:
-    """The effects of a scene. One that is None is not in the diagram.
+    """The effects of a scene. An effect that is None is not in the diagram.
 
     In a file, an effect with its defaults is written `gravity: {}`.
 
     Attributes:
-        shading: Smooths forces over facets.
+        shading: Force shading: facets feel smooth, edges stay sharp.
         friction: Stick-slip friction.
         braking: Viscous braking before contact.
         gravity: The tool's weight.
-        passivity: Takes energy that the loop has made.
+        passivity: Energy-based passivity control between the coupling and the device.
     """
 
     shading: ShadingParameters | None = None
@@ -128,10 +131,11 @@ class EncoderParameters:
     """Encoders on the motors: the loop sees counted angles, not the true ones.
 
     Attributes:
-        step_rad: Angle of a joint per count of its motor's encoder, six numbers, rad;
-            the preset's where not given.
-        velocity_window: Samples over which the speed is the difference of counts, at
-            least 1. Its resolution is the step per window, its delay half a window.
+        step_rad: Angle of a motor after its gear per count of its encoder, six numbers,
+            rad. Defaults to the preset's.
+        velocity_window: Number of ticks over which counts are subtracted to estimate
+            the speed, at least 1. The speed's resolution is the step divided by the
+            window, its delay half a window.
     """
 
     step_rad: list[float] | None = None
@@ -143,10 +147,10 @@ class JointFrictionParameters:
     """Dry and viscous friction of the motors, beyond the damping of the model.
 
     Attributes:
-        coulomb_Nm: Torque against motion, six numbers, N·m; the preset's where not
-            given.
-        viscous_Nms_per_rad: Torque per speed, six numbers, N·m·s/rad; none where not
-            given.
+        coulomb_Nm: Dry friction torque of each motor, six numbers, N·m. Defaults to the
+            preset's.
+        viscous_Nms_per_rad: Viscous friction torque per speed of each motor, six
+            numbers, N·m·s/rad. Defaults to none.
     """
 
     coulomb_Nm: list[float] | None = None
@@ -158,7 +162,7 @@ class ForceDelayParameters:
     """A delay of whole ticks on the way to the motors, on top of the hold.
 
     Attributes:
-        samples: Ticks, at least 1.
+        samples: Delay in ticks, at least 1.
     """
 
     samples: int = 1
@@ -169,8 +173,8 @@ class SaturationParameters:
     """Motors of limited torque.
 
     Attributes:
-        peak_torque_Nm: Of each motor after its gear, six numbers, N·m; the preset's
-            where not given.
+        peak_torque_Nm: Peak torque of each motor after its gear, six numbers, N·m.
+            Defaults to the preset's.
     """
 
     peak_torque_Nm: list[float] | None = None
@@ -185,8 +189,8 @@ class DeviceImperfections:
     Attributes:
         encoder: Counted angles and a speed estimated from them.
         friction: Dry and viscous friction.
-        delay: The wrench arrives later.
-        saturation: No motor gives more than its peak torque.
+        delay: Delay of the wrench on its way to the motors.
+        saturation: Limit of each motor to its peak torque.
     """
 
     encoder: EncoderParameters | None = None
@@ -215,28 +219,28 @@ class Pose:
 
 @dataclass(slots=True)
 class Tool:
-    """The tool in the hand: a mesh with a mass.
+    """A rigid mesh with a mass, moved by the coupling.
 
     Its inertia is that of the mesh filled with one density.
 
     Attributes:
         mesh: Path of a mesh, or of a model (SDF, URDF, MJCF) whose collision shapes
-            are taken, as a whole rigid; relative to the scene file, absolute, or
+            form one rigid tool; relative to the scene file, absolute, or
             `package://...` of this package or of Drake.
         scale: Meters per unit of the mesh file.
-        center: Whether the mesh is moved so that the middle of its box is at the
-            origin of its frame, where the coupling pulls. For a file that has its
-            origin somewhere else.
-        max_triangles: The mesh is first reduced to at most so many triangles; all
-            of them where not given. See
-            `drake_haptics.geometry.mesh.decimation.decimate`.
-        chord_error_m: Of a model with round shapes: largest distance of the polytopes
-            that stand for them, m; 1e-4 where not given.
-        decomposition: How the mesh is cut into convex pieces: a method of
+        center: Whether the mesh is moved so that the middle of its box is at the origin
+            of its frame, where the coupling pulls; meant for files with their origin
+            elsewhere.
+        max_triangles: Largest number of triangles to which the mesh is first reduced,
+            see `drake_haptics.geometry.mesh.decimation.decimate`. Defaults to all
+            triangles.
+        chord_error_m: Largest distance between a model's round shapes and the polytopes
+            that stand for them, m. Defaults to 1e-4.
+        decomposition: Method that cuts the mesh into convex pieces, one of those of
             `drake_haptics.geometry.decomposition.decompose.decompose`.
-        decomposition_error_m: For `merged`, and only there: how far a piece may depart
-            from the mesh, m.
-        mass_kg: Mass, kg.
+        decomposition_error_m: Distance that a piece may depart from the mesh, m; for
+            `merged`, and only there.
+        mass_kg: Mass of the tool, kg.
         grasp: X_HT, the pose of the tool's frame in the handle's.
     """
 
@@ -256,16 +260,19 @@ class EnvironmentObject:
     """An object that stands still in the world.
 
     Attributes:
-        name: Unique among the scene's objects.
-        mesh: As for the tool.
+        name: Name of the object, unique in the scene.
+        mesh: Path of a mesh or model, as for the tool.
         scale: Meters per unit of the mesh file.
-        center: As for the tool; `pose` then places the middle.
-        max_triangles: As for the tool.
-        chord_error_m: As for the tool.
-        decomposition: As for the tool.
-        decomposition_error_m: As for the tool.
+        center: Whether the mesh is centered, as for the tool; `pose` then places the
+            middle.
+        max_triangles: Largest number of triangles, as for the tool.
+        chord_error_m: Largest distance of polytopes from round shapes, m, as for the
+            tool.
+        decomposition: Method that cuts the mesh into convex pieces, as for the tool.
+        decomposition_error_m: Distance that a piece may depart from the mesh, m, as for
+            the tool.
         pose: X_WO, the pose of the object's frame in the world.
-        material: What it is made of.
+        material: Material of the object.
     """
 
     name: str = ""
@@ -284,31 +291,34 @@ class EnvironmentObject:
 class ContactParameters:
     """Parameters of the contact query and of the contact force.
 
-    There are two laws. `constraint` reads `skin_m` alone; all other keys are those of
-    `penalty`. A scene can have both, and `law` chooses.
+    There are two laws. `constraint` reads `skin_m` alone; all other keys belong to
+    `penalty`. A scene can give the keys of both, and `law` chooses.
 
     Attributes:
-        law: `penalty`, springs and dampers that push surfaces apart, or `constraint`,
-            by which the tool's step keeps all surfaces `skin_m` apart.
-        skin_m: For `constraint`: distance that the tool keeps from each object, m (the
-            δ of a row). What is to fit needs more play on each side than this. Defaults
-            to 3e-4, and to less where on the hand's path there is less play.
-        tolerance_m: Pieces nearer than this push each other apart, m (the paper's t).
+        law: Name of the law: `penalty`, by which springs and dampers push surfaces
+            apart, or `constraint`, by which the tool's step keeps all surfaces `skin_m`
+            apart.
+        skin_m: Distance that the tool keeps from each object, m (the δ of a row); for
+            `constraint`. A tool that must fit into an object needs more play than this
+            on each side. Defaults to 3e-4, or to less where the hand's path leaves less
+            play.
+        tolerance_m: Distance below which pieces push each other apart, m (the paper's
+            t).
         stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
-        clustering: How few contacts are made of many: `shared`, which is
+        clustering: Method that makes few contacts of many: `shared`, which is
             continuous, or `octree`, the paper's.
-        cluster_size_m: For `octree`, and only there: contacts nearer than this
-            count as one, m (the paper's δ).
-        depth: Of two pieces in overlap: `tracked`, the way out that is nearest to
-            the last one, which does not pop through a thin plate, or `global`, the
-            least of all, which costs more.
-        max_walk_steps: Bound on the steps of the search for a way out from feature
-            to feature (the paper's maximum number of iterations), at least 1. Where
-            it ends a search, the depth may be too large, never too small.
-        query_rate_hz: Contacts are looked for so often, Hz, and carried along with
-            the bodies in between; `device.rate_hz` divided by a whole number. Where
-            not given, at every tick.
+        cluster_size_m: Distance below which contacts count as one, m (the paper's δ);
+            for `octree`, and only there.
+        depth: Penetration depth of two pieces in overlap: `tracked`, along the way out
+            that is nearest to the last one, which does not pop through a thin plate, or
+            `global`, the least of all, which costs more.
+        max_walk_steps: Bound on the steps from feature to feature in the search for a
+            way out (the paper's maximum number of iterations), at least 1. Where it
+            ends a search, the depth may be too large, never too small.
+        query_rate_hz: Rate at which contacts are searched for, Hz; in between they are
+            carried along with the bodies. It is `device.rate_hz` divided by a whole
+            number. Defaults to every tick.
     """
 
     law: str = "penalty"
@@ -332,10 +342,11 @@ class CouplingParameters:
 
     Attributes:
         stiffness_N_per_m: Force per meter between handle and tool, N/m.
-        damping_Ns_per_m: Force per speed of one against the other, N·s/m.
-        rotational_stiffness_Nm_per_rad: Torque per angle between them, N·m/rad.
-        rotational_damping_Nms_per_rad: Torque per speed of rotation of one against
-            the other, N·m·s/rad.
+        damping_Ns_per_m: Force per relative speed of handle and tool, N·s/m.
+        rotational_stiffness_Nm_per_rad: Torque per angle between handle and tool,
+            N·m/rad.
+        rotational_damping_Nms_per_rad: Torque per relative angular speed of handle and
+            tool, N·m·s/rad.
     """
 
     stiffness_N_per_m: float = 800.0
@@ -346,27 +357,29 @@ class CouplingParameters:
 
 @dataclass(slots=True)
 class DeviceParameters:
-    """The device that is held.
+    """The device that the hand holds.
 
     Attributes:
         preset: Name of a file in models/devices (see `drake-haptics devices`), or a
             file of your own (`*.yaml`), relative to the scene file.
-        base: X_WB, the pose of the device's base in the world. Where not given,
-            the middle of its workspace is put at the middle of the hand's path, and
-            a device that is not simulated begins where the path does.
+        base: X_WB, the pose of the device's base in the world. Defaults to the pose
+            that puts the middle of the workspace at the middle of the hand's path; the
+            handle of a device that is not simulated then begins where the path does.
         rate_hz: Ticks per second of the haptic loop, Hz.
-        servo_rate_hz: How often contact is solved and the tool stepped between ticks,
-            Hz; `rate_hz` times a whole number. More than once a tick only for
+        servo_rate_hz: Rate at which contact is solved and the tool stepped, Hz;
+            `rate_hz` times a whole number. It is more than `rate_hz` only for
             `contact.law: constraint`, and for a simulated device or one behind
-            `udp://`, whose servo does it on a thread. Where not given, at every tick.
-        tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
-            drawing stops, then contacts are looked for less far, then fewer push
-            (docs/troubleshooting.md). Nothing is dropped where not given.
-        max_force_N: Largest force shown, N; the preset's where not given. With no more
-            is the tool pressed; at 0 nothing is shown, and it is pressed without limit.
-        max_torque_Nm: Largest torque shown, N·m; the preset's where not given. With no
-            more is the tool turned; at 0 with no more than the force has at 5 cm.
-        twin: What a simulated device has of a real one's faults.
+            `udp://`, whose servo does it on a thread. Defaults to every tick.
+        tick_budget_us: Time that the work of a tick may take, µs. Where ticks take
+            longer, drawing stops, then contacts are searched for less far, then fewer
+            push (docs/troubleshooting.md). Defaults to no budget: nothing is dropped.
+        max_force_N: Largest force shown, N. Defaults to the preset's. The coupling
+            presses the tool with no more; at 0 no force is shown, and the tool is
+            pressed without limit.
+        max_torque_Nm: Largest torque shown, N·m. Defaults to the preset's. The coupling
+            turns the tool with no more; at 0 with no more than the torque of the
+            largest force at 5 cm.
+        twin: Imperfections of the simulated device.
     """
 
     preset: str = "phantom_premium_1_5_6dof"
@@ -380,13 +393,13 @@ class DeviceParameters:
 
     @property
     def wrench_period_s(self) -> float:
-        """How often the wrench is computed that the device shows, s."""
+        """Period at which the wrench that the device shows is computed, s."""
         return 1.0 / (self.servo_rate_hz or self.rate_hz)
 
 
 @dataclass(slots=True)
 class Waypoint:
-    """A pose of the tool at a time, which the hand aims at.
+    """A pose of the tool that the hand aims at, and its time.
 
     Attributes:
         time_s: Time from the start of the path, s.
@@ -401,13 +414,13 @@ class Waypoint:
 
 @dataclass(slots=True)
 class HandPathParameters:
-    """The path that the hand aims at; its spring decides how firmly.
+    """The path that the hand aims at; the stiffness of the hand decides how closely.
 
     Attributes:
-        periodic: Whether the path starts again at its last waypoint, which must
-            then be at the first one's pose. Else the hand rests at the last.
-        waypoints: In order of time, the first at 0 s; neighbors turned by less
-            than 120°.
+        periodic: Whether the path starts again at its last waypoint, which must then be
+            at the first one's pose. Otherwise the hand rests at the last waypoint.
+        waypoints: Waypoints in order of time, the first at 0 s; neighbors are turned by
+            less than 120°.
     """
 
     periodic: bool = False
@@ -422,7 +435,7 @@ class HandParameters:
         grip: Name of a grip: none, light, nominal or firm. Their masses, stiffnesses
             and dampings are those of `drake_haptics.systems.HAND_GRIPS`:
             springs of 50, 300 and 1000 N/m.
-        path: Where the hand wants the tool to go.
+        path: Path along which the hand moves the tool.
     """
 
     grip: str = "nominal"
@@ -434,14 +447,14 @@ class Scene:
     """A whole scene.
 
     Attributes:
-        description: One sentence for people.
-        tool: What is in the hand.
-        environment: What it meets; at least one object.
-        contact: How contact is found and answered.
-        coupling: Between the handle and the tool.
-        device: What is held.
-        hand: Who holds it.
-        effects: What is felt besides contact.
+        description: One sentence that describes the scene.
+        tool: Tool in the hand.
+        environment: Objects that the tool meets; at least one.
+        contact: Law of contact and its parameters.
+        coupling: Gains of the coupling.
+        device: The device that the hand holds.
+        hand: Hand that holds the device.
+        effects: Effects that are felt besides contact.
     """
 
     description: str = ""

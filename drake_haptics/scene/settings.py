@@ -30,17 +30,17 @@ def change_scene(scene: Scene, settings: Iterable[str]) -> Scene:
     """Returns a scene with other values.
 
     Args:
-        scene: Stays as it is.
-        settings: Each KEY=VALUE, the key as messages name it
+        scene: Scene to start from; it is not changed.
+        settings: Settings KEY=VALUE, the key as messages name it
             (`contact.stiffness_N_per_m`, `environment[0].pose.position_m`), the value
-            as in a scene file. Without a value the key is taken out, so that its
-            default holds, and an effect is gone. They count together: of two that
-            need each other either may be first. The path of a mesh or a preset is
-            relative to the current folder.
+            as in a scene file. A key without a value is taken out, so that its default
+            holds, and an effect is gone. The scene is checked after all settings: of
+            two that need each other either may be first. The path of a mesh or a preset
+            is relative to the current folder.
 
     Raises:
-        SceneError: A setting is not of that form, its key is unknown, its file is
-            not there, or the value is impossible.
+        SceneError: A setting is not of that form, its key is unknown, its file does not
+            exist, or the value is impossible.
     """
     data = yaml_load_data(yaml_dump_typed(scene))
     for setting in settings:
@@ -69,7 +69,7 @@ def list_setting_keys() -> list[str]:
 
 
 def _set(data: Any, key: str, value: Any) -> None:
-    """Sets what a key names; mappings on the way are made where there are none."""
+    """Sets the value of a key, and makes missing mappings on the way."""
     steps = _split(key)
     place: Any = data
     for i, step in enumerate(steps[:-1]):
@@ -90,7 +90,7 @@ def _split(key: str) -> list[str | int]:
     """Returns the names and indices of a key.
 
     Raises:
-        SceneError: It is not a setting, or no scene has such a part.
+        SceneError: The text is not a key, or no scene has such a part.
     """
     steps: list[str | int] = []
     for part in key.split("."):
@@ -105,9 +105,9 @@ def _split(key: str) -> list[str | int]:
 
 
 def _make_hint(key: str) -> str:
-    """Returns the keys that were probably meant, or where all of them are."""
+    """Returns the keys that were probably meant, or where to find all of them."""
     known = list_setting_keys()
-    # People leave the part out, and it may be in several.
+    # People leave out the part, and several parts may have such a key.
     near = [name for name in known if name.endswith(f".{key}")]
     near = near or difflib.get_close_matches(key, known, n=1)
     if not near:
@@ -116,10 +116,10 @@ def _make_hint(key: str) -> str:
 
 
 def _look_up(place: Any, steps: Sequence[str | int], i: int, key: str) -> Any:
-    """Returns what stands in a mapping or list at a step of a key.
+    """Returns the value in a mapping or list at a step of a key.
 
     Raises:
-        SceneError: Nothing does.
+        SceneError: There is no such value.
     """
     step = steps[i]
     if isinstance(step, str) and isinstance(place, dict) and step in place:
@@ -136,7 +136,7 @@ def _look_up(place: Any, steps: Sequence[str | int], i: int, key: str) -> Any:
 def list_keys(schema: type, where: str = "") -> list[str]:
     """Returns the key of every single value, like `contact.tolerance_m` of a `Scene`.
 
-    Lists, as of objects and waypoints, are one value each.
+    Lists, such as those of objects and waypoints, are one value each.
 
     Args:
         schema: A dataclass.

@@ -1,4 +1,4 @@
-"""Checks the values of a scene, and asks about those that are probably wrong."""
+"""Checks the values of a scene, and finds those that are probably wrong."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from drake_haptics.scene.yaml_loading import join_key, make_hint
 
 _CLUSTERINGS = ("shared", "octree")
 _DEPTHS = ("tracked", "global")
-# How far a ratio of two rates may be from a whole number.
+# Relative error within which a ratio of two rates counts as whole.
 _RATE_SLACK = 1e-9
-# 5 mm of way at 0.1 m/s, more than near contacts are looked for.
+# A hand at 0.1 m/s moves 5 mm per query, farther than contacts are searched for.
 _LEAST_QUERY_RATE_HZ = 20.0
-# So deep the contact answers eleven times what its skin carries. The scenes that are
-# shipped press up to 2.3 tolerances deep, at the limit of their device.
+# Depth, in tolerances, at which the force is eleven times that at the surface. The
+# shipped scenes press up to 2.3 tolerances deep, at the limit of their device.
 _DEEP = 10.0
 
 
@@ -49,7 +49,7 @@ def check_values(scene: Scene) -> None:
     """Checks that a scene describes something physically possible.
 
     Raises:
-        SceneError: A value out of its range.
+        SceneError: A value is out of its range.
     """
     require(bool(scene.tool.mesh), "tool.mesh", "is missing")
     require_all_positive(scene.tool, "tool", ["mass_kg"])
@@ -98,16 +98,16 @@ def check_rendering(
     effects: Effects,
     coupling: CouplingParameters | None,
 ) -> None:
-    """Checks the parts of a scene that a body of a plant is rendered with.
+    """Checks the parts of a scene with which a body of a plant is rendered.
 
     Args:
-        contact: As in a scene.
-        materials: Of bodies, by their names.
-        effects: As in a scene.
-        coupling: As in a scene, if there is a handle.
+        contact: Law of contact and its parameters, as in a scene.
+        materials: Materials of bodies, by their names.
+        effects: Effects, as in a scene.
+        coupling: Gains of the coupling; None without a handle.
 
     Raises:
-        SceneError: A value out of its range, or one that does nothing under this law.
+        SceneError: A value is out of its range, or does nothing under this law.
     """
     _check_contact(contact)
     _check_effects(effects)
@@ -185,14 +185,15 @@ def _check_contact(contact: ContactParameters) -> None:
 
 
 def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
-    """Checks that contacts are looked for every so many ticks.
+    """Checks that the ticks between two queries are a whole number.
 
     Args:
         rate_hz: contact.query_rate_hz, Hz.
         ticks_per_s: device.rate_hz, Hz.
 
     Raises:
-        SceneError: The one is not the other divided by a whole number.
+        SceneError: `rate_hz` is too low, or is not `ticks_per_s` divided by a whole
+            number.
     """
     where = "contact.query_rate_hz"
     require(
@@ -250,7 +251,7 @@ def _check_tick_budget(device: DeviceParameters) -> None:
 
 
 def _check_material(material: Material, where: str, effects: Effects) -> None:
-    """Checks a material, and that the scene names the effects it speaks of."""
+    """Checks a material, and that the scene names the effects that it refers to."""
     require_all_positive(material, where, ["stiffness_N_per_m", "skin_m"])
     require_none_negative(material, where, ["damping_Ns_per_m", "friction_coefficient"])
     for key, effect in [("friction_coefficient", "friction"), ("shading", "shading")]:
@@ -262,7 +263,7 @@ def _check_material(material: Material, where: str, effects: Effects) -> None:
 
 
 def _check_effects(effects: Effects) -> None:
-    """Checks the values of the effects that there are."""
+    """Checks the values of the effects that are not None."""
     if (shading := effects.shading) is not None:
         require(
             0.0 <= shading.crease_angle_deg <= 180.0,
@@ -287,7 +288,7 @@ def _check_effects(effects: Effects) -> None:
 
 
 def _check_twin(twin: DeviceImperfections) -> None:
-    """Checks the values of the parts that there are."""
+    """Checks the values of the parts that are not None."""
     where = "device.twin"
     if (encoder := twin.encoder) is not None:
         require_each(encoder, f"{where}.encoder", "step_rad", 6, positive=True)
@@ -325,7 +326,7 @@ def _check_pose(pose: Any, where: str) -> None:
 
 
 def require_all_positive(part: Any, where: str, keys: list[str]) -> None:
-    """Raises SceneError unless those of the values that are given are positive."""
+    """Raises SceneError unless all values that are given are positive."""
     for key in keys:
         value = getattr(part, key)
         require(
@@ -349,14 +350,14 @@ def require_none_negative(part: Any, where: str, keys: list[str]) -> None:
 def require_each(
     part: Any, where: str, key: str, count: int, *, positive: bool
 ) -> None:
-    """Raises SceneError unless a list, if given, has so many numbers in range.
+    """Raises SceneError unless a list, if given, has `count` numbers in range.
 
     Args:
-        part: Holds the list.
+        part: Dataclass that holds the list.
         where: Key of the part, for messages.
-        key: Of the list in it.
-        count: How many numbers there must be.
-        positive: Whether 0 is out of range, as what is negative always is.
+        key: Key of the list in the part.
+        count: Number of entries that the list must have.
+        positive: Whether 0 is out of range; negative numbers always are.
     """
     values = getattr(part, key)
     if values is None:
@@ -380,11 +381,11 @@ def require(condition: bool, where: str, complaint: str) -> None:
 def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
     """Returns the speed at which one step crosses the tolerance, m/s.
 
-    Infinite under the constraint law, whose step sees as far as it goes.
+    The speed is infinite under the constraint law, whose step sees as far as it moves.
 
     Args:
-        contact: Law, tolerance, and how often contacts are looked for.
-        period_s: How often they are where `contact` does not say, s.
+        contact: Law, tolerance and query rate.
+        period_s: Time between two queries where `contact` gives no query rate, s.
     """
     if contact.law == "constraint":
         return math.inf
@@ -392,17 +393,17 @@ def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
 
 
 def question_depth(depth_m: float, tolerance_m: float) -> str:
-    """Asks about a contact that is deeper than ten tolerances.
+    """Returns a warning of a contact that is deeper than ten tolerances.
 
-    Without a tolerance there is no skin to measure by, and nothing is asked: surfaces
-    push only as they overlap.
+    Without a tolerance there is no scale for the depth, and no warning: surfaces push
+    only where they overlap.
 
     Args:
         depth_m: Depth of the deepest contact, m; not positive if none penetrates.
-        tolerance_m: The distance below which contacts push, m.
+        tolerance_m: Distance below which contacts push, m.
 
     Returns:
-        A sentence if it is; nothing if not.
+        The warning, a sentence; empty if no contact is that deep.
     """
     if not depth_m > _DEEP * tolerance_m > 0.0:
         return ""

@@ -18,11 +18,11 @@ from drake_haptics.common.errors import SceneError
 
 
 def load_yaml(path: Path) -> Any:
-    """Returns what a file of YAML holds.
+    """Returns the content of a YAML file.
 
     Raises:
-        SceneError: It cannot be opened, is not YAML, or gives a key twice; the message
-            is one line.
+        SceneError: The file cannot be opened, is not YAML, or gives a key twice; the
+            message is one line.
     """
     try:
         data = yaml_load_file(str(path))
@@ -41,10 +41,10 @@ def load_yaml(path: Path) -> Any:
 
 
 def _refuse_repeated_keys(path: Path, tree: yaml.Node | None) -> None:
-    """Refuses a key that is given twice, of which YAML takes the last in silence.
+    """Refuses a key that is given twice, of which YAML silently takes the last.
 
     Raises:
-        SceneError: There is one; the message names both lines.
+        SceneError: A key is given twice; the message names both lines.
     """
     left: list[tuple[str, yaml.Node | None]] = [("", tree)]
     seen = set()
@@ -77,12 +77,12 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
     Args:
         schema: A dataclass, `float`, `int`, `str`, `bool`, `list[...]`,
             `dict[str, ...]` or `... | None`.
-        data: What stands in its place.
-        where: Key of the place, for messages.
+        data: Value to check against the schema.
+        where: Key of the value, for messages.
 
     Raises:
-        SceneError: An unknown key, with the nearest known one, or a value of the
-            wrong kind.
+        SceneError: A key is unknown, and the message names the nearest known one; or a
+            value is of the wrong kind.
     """
     arguments = typing.get_args(schema)
     if type(None) in arguments:
@@ -107,12 +107,12 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
 
 
 def join_key(where: str, key: str) -> str:
-    """Returns the key of what is in a part, which may be the whole file."""
+    """Returns the key of an entry of a part, which may be the whole file."""
     return f"{where}.{key}" if where else key
 
 
 def _check_mapping(schema: Any, data: Any, where: str) -> None:
-    """Checks the keys of a mapping, then what stands under them."""
+    """Checks the keys of a mapping, then their values."""
     if not isinstance(data, dict):
         found = "nothing" if data is None else reprlib.repr(data)
         raise SceneError(f"{where or 'the file'}: expected keys, found {found}")

@@ -19,19 +19,19 @@ from drake_haptics.systems.arm.motor_torque import MotorTorque
 
 @dataclass(frozen=True, eq=False)
 class ArmTwin:
-    """Parts of an arm's twin. One that is None, or 0, is not in the diagram.
+    """Parts of an arm's twin. A part that is None, or 0, is not in the diagram.
 
     All angles and torques of motors are after their gears.
 
     Attributes:
         period_s: The tick, s.
         joint_per_motor: S (6, 6) in q = S q_motor, so that τ_motor = Sᵀ τ.
-        encoder_step_rad: (6,) see `JointEncoder`, rad.
-        velocity_window: For the encoders, ticks.
-        coulomb_Nm: (6,) see `JointFriction`, N·m.
-        viscous_Nms_per_rad: (6,) for the friction, N·m·s/rad.
-        delay_samples: See `ForceDelay`, ticks.
-        peak_torque_Nm: (6,) see `MotorTorque`, N·m.
+        encoder_step_rad: (6,) angle per count of each encoder, rad; see `JointEncoder`.
+        velocity_window: Window of the encoders' speed, ticks.
+        coulomb_Nm: (6,) dry friction, N·m; see `JointFriction`.
+        viscous_Nms_per_rad: (6,) viscous friction, N·m·s/rad.
+        delay_samples: Delay of the wrench, ticks; see `ForceDelay`.
+        peak_torque_Nm: (6,) peak torque, N·m; see `MotorTorque`.
     """
 
     period_s: float
@@ -51,19 +51,19 @@ def add_arm_twin(
     hand: HandImpedance,
     free_arm: ArmDynamics,
 ) -> tuple[InputPort, OutputPort, OutputPort]:
-    """Adds the parts of a twin that there are, between an arm and its ports.
+    """Adds the given parts of a twin between an arm and its ports.
 
     Args:
-        builder: Of the arm's diagram; the arm's state is not connected to the hand's
-            input here.
-        twin: The parts.
-        plant: The arm, finalized, at its default angles.
-        hand: What holds it.
-        free_arm: The arm's kinematics, held by no hand.
+        builder: Builder of the arm's diagram; the caller connects the arm's state to
+            the hand.
+        twin: Parts to add.
+        plant: Finalized plant of the arm, at its default angles.
+        hand: Hand that holds the arm.
+        free_arm: Kinematics of the arm without a hand.
 
     Returns:
         The input for the wrench that the device is to show, the arm's generalized
-        force, and the handle's state, as of `HandImpedance`.
+        force, and the handle's state, as in `HandImpedance`.
 
     Raises:
         ValueError: A figure is out of its range.
@@ -121,7 +121,7 @@ def add_arm_twin(
 
 
 def _add(builder: DiagramBuilder, forces: list[OutputPort]) -> OutputPort:
-    """Returns the sum of generalized forces; no system for one alone."""
+    """Returns the sum of generalized forces; a single force needs no system."""
     if len(forces) == 1:
         return forces[0]
     total = builder.AddNamedSystem("generalized_force", Adder(len(forces), 6))

@@ -13,8 +13,8 @@ from drake_haptics.common.value_checks import check_at_least, check_positive
 class ForceDelay(Diagram):
     """Delays a wrench by whole periods, on top of the hold before it.
 
-    Each of its holds samples what the one before it held until then, so that the
-    wrench that leaves is that of `samples` ticks ago, exactly.
+    Each of its holds samples the value that the one before it held until then, so that
+    the output is exactly the wrench of `samples` ticks ago.
 
     .. pydrake_system::
 
@@ -36,7 +36,7 @@ class ForceDelay(Diagram):
 
         Args:
             period_s: The tick, s.
-            samples: Ticks, at least 1.
+            samples: Delay in ticks, at least 1.
 
         Raises:
             ValueError: The period is not positive or there is no sample.

@@ -32,10 +32,11 @@ class HandGrip:
     Attributes:
         mass_kg: Mass that moves with the handle, kg.
         inertia_kgm2: Rotational inertia about each axis, kg·m².
-        stiffness_N_per_m: Of the spring to where the hand wants the handle, N/m.
-        damping_Ns_per_m: N·s/m.
-        rotational_stiffness_Nm_per_rad: N·m/rad.
-        rotational_damping_Nms_per_rad: N·m·s/rad.
+        stiffness_N_per_m: Stiffness of the spring to the pose where the hand wants the
+            handle, N/m.
+        damping_Ns_per_m: Damping beside that spring, N·s/m.
+        rotational_stiffness_Nm_per_rad: Rotational stiffness, N·m/rad.
+        rotational_damping_Nms_per_rad: Rotational damping, N·m·s/rad.
     """
 
     mass_kg: float
@@ -66,17 +67,17 @@ HAND_GRIPS: dict[str, HandGrip | None] = {
     "nominal": NOMINAL_GRIP,
     "firm": HandGrip(0.3, 1e-3, 1000.0, 15.0, 3.0, 0.05),
 }
-# Who holds a real device may hold it no more firmly than this.
+# The loosest grip to be expected on a real device.
 LOOSEST_GRIP = "light"
 
 
 class HandImpedance(DifferentiableSystem):
     """A hand as a six-axis spring and damper that follows a path.
 
-    It draws the handle to X_WP X_PH, with P the frame of the path, and passes on
-    the wrench that the device's motors show. Both act in continuous time as
-    generalized forces, τ = Jᵀ (F_hand + F_Ho_W_rendered), which is one call of the core
-    and one vector port, where applied spatial forces would be many.
+    It draws the handle to X_WP X_PH, with P the frame of the path, and passes on the
+    wrench that the device's motors show. Both act in continuous time as generalized
+    forces, τ = Jᵀ (F_hand + F_Ho_W_rendered), which takes one call of the core and one
+    vector port, where applied spatial forces would take many.
 
     .. pydrake_system::
 
@@ -95,7 +96,7 @@ class HandImpedance(DifferentiableSystem):
     * `handle_state` (13) is [X_WH; V_WH]: the handle's pose [qw qx qy qz x y z], m,
       and its spatial velocity [ω; v], rad/s and m/s, in the world.
 
-    Both raise FloatingPointError where the arm's state is not finite.
+    Both outputs raise FloatingPointError where the arm's state is not finite.
     """
 
     def __init__(
@@ -109,14 +110,14 @@ class HandImpedance(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            plant: The arm, finalized: six revolute joints in a chain.
-            handle: Its body that is held, at the end of the chain.
-            path: Where the hand wants P to go.
-            X_PH: Where it wants the handle in P.
-            gains: Of the hand; None lets go.
+            plant: Finalized plant of the arm: six revolute joints in a chain.
+            handle: Body of the arm that is held, at the end of the chain.
+            path: Path along which the hand moves P.
+            X_PH: Pose in P at which the hand wants the handle.
+            gains: Gains of the hand; None for a hand that lets go.
 
         Raises:
-            ValueError: The arm is no such chain.
+            ValueError: The arm is not such a chain.
         """
         super().__init__()
         self._arm = make_held_arm(plant, handle, path, X_PH, gains)
@@ -163,17 +164,17 @@ def make_held_arm(
     X_PH: RigidTransform,
     gains: CouplingGains | None,
 ) -> ArmDynamics:
-    """Reads an arm's kinematics off its plant and holds them against it.
+    """Reads an arm's kinematics from its plant, and checks them against it.
 
     Args:
-        plant: The arm, finalized: six revolute joints in a chain.
-        handle: Its body that is held, at the end of the chain.
-        path: Where the hand wants P to go.
-        X_PH: Where it wants the handle in P.
-        gains: Of the hand; None lets go.
+        plant: Finalized plant of the arm: six revolute joints in a chain.
+        handle: Body of the arm that is held, at the end of the chain.
+        path: Path along which the hand moves P.
+        X_PH: Pose in P at which the hand wants the handle.
+        gains: Gains of the hand; None for a hand that lets go.
 
     Raises:
-        ValueError: The arm is no such chain.
+        ValueError: The arm is not such a chain.
     """
     if (plant.num_positions(), plant.num_velocities()) != (_NUM_JOINTS, _NUM_JOINTS):
         raise ValueError(f"the arm must have {_NUM_JOINTS} revolute joints")

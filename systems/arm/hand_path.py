@@ -17,12 +17,12 @@ _LARGEST_TURN_DEG = 120.0
 
 
 class HandPath:
-    """A pose X_WP over time through waypoints, smooth, never beyond them.
+    """A smooth pose X_WP over time, through waypoints and never beyond them.
 
     Positions and quaternions follow the shape-preserving cubic (Fritsch and Carlson
     1980), so that speed is continuous and a pause between two equal waypoints stays
-    still. The core evaluates them, because the simulated arm asks several times per
-    tick.
+    still. The core evaluates them, because the simulated arm needs them several times
+    per tick.
     """
 
     def __init__(
@@ -35,11 +35,11 @@ class HandPath:
         """Constructs the path.
 
         Args:
-            times_s: Rising, the first one 0 s.
-            poses: X_WP at these times.
-            periodic: Start again after the last time, at which the pose must be
-                the first one's; else the path begins and ends at rest and stays
-                at its end.
+            times_s: Times of the waypoints, rising, the first one 0, s.
+            poses: Poses X_WP at these times.
+            periodic: Whether the path starts again after the last time, at which the
+                pose must be the first one's; else the path begins and ends at rest and
+                stays at its end.
 
         Raises:
             ValueError: The times do not rise from 0, neighbors are turned by
@@ -76,14 +76,14 @@ class HandPath:
 
     @property
     def core(self) -> PosePath:
-        """The law that the core evaluates."""
+        """The path in the form that the core evaluates."""
         return self._core
 
     def calc(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
         """Returns X_WP as [qw qx qy qz x y z] and V_WP = [ω; v] at a time.
 
         Args:
-            time_s: Not negative, s.
+            time_s: Time, not negative, s.
 
         Returns:
             The pose (7,), m, and the spatial velocity (6,) at P's origin in the
@@ -93,7 +93,7 @@ class HandPath:
 
 
 def _align_signs(samples: np.ndarray) -> np.ndarray:
-    """Chooses of q and -q the one nearer to the waypoint before."""
+    """Chooses q or -q, whichever is nearer to the waypoint before."""
     smallest = np.cos(np.deg2rad(_LARGEST_TURN_DEG) / 2.0)
     for i in range(1, len(samples)):
         cosine = samples[i, :4] @ samples[i - 1, :4]
@@ -113,8 +113,8 @@ def _fit(times: np.ndarray, samples: np.ndarray, periodic: bool) -> np.ndarray:
         return np.zeros((0, 4, 7))
     breaks = times
     if periodic:
-        # One more segment at either side, so that the slope at the seam is as
-        # at any other waypoint. A whole turn arrives at -q.
+        # One more segment at either side, so that the slope at the seam is found as at
+        # any other waypoint. A whole turn arrives at -q.
         sign = np.ones(7)
         sign[:4] = np.sign(samples[0, :4] @ samples[-1, :4])
         before, after = samples[-2] * sign, samples[1] * sign

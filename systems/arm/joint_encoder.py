@@ -1,4 +1,4 @@
-"""Encoders on an arm's motors, and the handle as a driver knows it from them."""
+"""Encoders on an arm's motors, and the handle's motion that a driver gets from them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class JointEncoder(LeafSystem):
 
     The state is the handle's (13) and the counted angles of the last W + 1 ticks,
     newest first, 6 each. An unrestricted update writes it every period from 0 s on:
-    such come before all discrete updates of the same time, so that counting adds no
+    those come before all discrete updates of the same time, so that counting adds no
     tick of delay. When a simulation begins the window is filled with the first count.
     """
 
@@ -55,13 +55,13 @@ class JointEncoder(LeafSystem):
         """Constructs the system.
 
         Args:
-            plant: The arm, finalized; before the first tick it is at its default
-                angles.
-            arm: Its kinematics.
+            plant: Finalized plant of the arm, at its default angles before the first
+                tick.
+            arm: Kinematics of the arm.
             period_s: The tick T, s.
             joint_per_motor: S (6, 6) in q = S q_motor, invertible.
-            step_rad: Δ of each motor after its gear (6,), rad.
-            velocity_window: W, ticks, at least 1.
+            step_rad: (6,) angle Δ of each motor after its gear per count, rad.
+            velocity_window: Window W of the speed, ticks, at least 1.
 
         Raises:
             ValueError: The period or a step is not positive, or the window is empty.

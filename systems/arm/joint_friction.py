@@ -8,8 +8,8 @@ from pydrake.systems.framework import BasicVector, Context, DiscreteValues, Leaf
 
 from drake_haptics.common.value_checks import check_at_least, check_positive
 
-# Angular frequency of a joint on its bristles times the tick: as stiff as an integrator
-# of second order with one step per tick follows well.
+# Angular frequency of a joint on its bristles times the tick: the largest that an
+# integrator of second order follows well with one step per tick.
 _STIFFNESS = 0.4
 _DAMPING_RATIO = 0.7
 
@@ -23,14 +23,14 @@ class JointFriction(LeafSystem):
 
         τ = −clamp(k (q − w) + d q̇, ±τ_c) − b q̇,
 
-    with the anchor w, which every tick is pulled after the motor so far that
+    with the anchor w, which at every tick is pulled after the motor so far that
     `|k (q − w)| ≤ τ_c`. So a motor below its breakaway torque is held by a damped
-    spring, which does not creep and does not chatter; above it slides against τ_c. Seen
-    in continuous time the element never gives more energy than its spring took.
+    spring, which does not creep and does not chatter; above it the motor slides against
+    τ_c. In continuous time the element never gives more energy than its spring took.
 
     A motor gives way by τ_c/k before it slides. k is as large as one step of the
-    integrator per tick can follow: k = (0.4/T)² times the inertia that the motor meets
-    where all others are free.
+    integrator per tick can follow: k = (0.4/T)² times the inertia that the motor moves
+    while all other motors are free.
 
     .. pydrake_system::
 
@@ -59,12 +59,12 @@ class JointFriction(LeafSystem):
         """Constructs the system.
 
         Args:
-            plant: The arm, finalized; at its default angles nothing is stretched, and
-                its inertia there counts.
+            plant: Finalized plant of the arm. At its default angles no bristle is
+                stretched, and its inertia there counts.
             period_s: The tick T, s.
             joint_per_motor: S (6, 6) in q = S q_motor, invertible.
-            coulomb_Nm: τ_c of each motor after its gear (6,), N·m.
-            viscous_Nms_per_rad: b (6,), N·m·s/rad.
+            coulomb_Nm: (6,) dry friction τ_c of each motor after its gear, N·m.
+            viscous_Nms_per_rad: (6,) viscous friction b of each motor, N·m·s/rad.
 
         Raises:
             ValueError: The period is not positive or a friction is negative.
@@ -99,17 +99,17 @@ class JointFriction(LeafSystem):
 
     @property
     def break_away_rad(self) -> np.ndarray:
-        """How far each motor gives way before it slides, (6,), rad after its gear."""
+        """(6,) angle that each motor gives way before it slides, rad after its gear."""
         return self._break_away.copy()
 
     def calc_stored_energy(self, context: Context) -> float:
-        """Returns what the bristles can give back, J.
+        """Returns the energy that the bristles can give back, J.
 
         Args:
-            context: The system's.
+            context: Context of this system.
         """
         stretch = np.abs(self._calc_motor_state(context)[0] - self._read(context))
-        # What is stretched beyond its limit slides back to it.
+        # A bristle that is stretched beyond its limit slides back to it.
         held = np.minimum(stretch, self._break_away)
         beyond = self._coulomb_Nm * (stretch - held)
         return float((0.5 * self._stiffness * held**2 + beyond).sum())

@@ -17,9 +17,9 @@ class MotorTorque(DifferentiableSystem):
     """Jacobian-transpose actuation by motors of limited torque.
 
     τ_motor = clamp(Sᵀ J_WHᵀ F_Ho_W_rendered), where each amplifier clamps its own motor
-    and q = S q_motor; the joints get τ = S⁻ᵀ τ_motor. A wrench that no motor must be
-    limited for arrives as it is. Otherwise J_WH⁻ᵀ S⁻ᵀ τ_motor arrives, which has
-    another direction than the wrench that was commanded.
+    and q = S q_motor; the joints get τ = S⁻ᵀ τ_motor. A wrench within the limits of all
+    motors arrives as it is. Otherwise J_WH⁻ᵀ S⁻ᵀ τ_motor arrives, which has another
+    direction than the commanded wrench.
 
     .. pydrake_system::
 
@@ -35,8 +35,8 @@ class MotorTorque(DifferentiableSystem):
       world, N·m and N.
     * `generalized_force` (6) is for the plant, N·m.
 
-    Its derivative is that of the motors that are not at their limit; one at its limit
-    has none.
+    Its derivative is that of the motors that are not at their limit; a motor at its
+    limit has none.
     """
 
     def __init__(
@@ -45,9 +45,10 @@ class MotorTorque(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            arm: Kinematics of the arm, held by no hand.
+            arm: Kinematics of the arm without a hand.
             joint_per_motor: S (6, 6), invertible.
-            peak_torque_Nm: Of each motor after its gear (6,), positive, N·m.
+            peak_torque_Nm: (6,) peak torque of each motor after its gear, positive,
+                N·m.
 
         Raises:
             ValueError: A torque is not positive.
@@ -68,7 +69,7 @@ class MotorTorque(DifferentiableSystem):
         )
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
-        # The hand gives the time, and there is no hand.
+        # Only a hand depends on the time, and the arm has no hand.
         torque = self._arm.calc_joint_torques(
             0.0, self._arm_state.Eval(context), self._F_Ho_W_rendered.Eval(context)
         )

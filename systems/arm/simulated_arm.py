@@ -27,10 +27,10 @@ from drake_haptics.systems.framework.differentiable_system import export_parts
 
 _MAX_ITERATIONS = 100
 _LARGEST_STEP_RAD = 0.3
-# rad and m; Newton steps near the answer cost one more for the last digits, which
-# stiff springs at the handle would turn into forces.
+# rad and m. It takes one more Newton step, for the last digits, which stiff springs at
+# the handle would turn into forces.
 _TOLERANCE = 1e-12
-# Of the Jacobian with lengths in units of the arm's own: below this, some motion of
+# Bound on the Jacobian with lengths in units of the arm's own: below it, some motion of
 # the handle needs ten times the joint speed of the easiest one.
 _ARM_LENGTH_M = 0.2
 _SMALLEST_SINGULAR_VALUE = 0.1
@@ -49,13 +49,15 @@ def solve_arm_positions(
     """Returns joint positions that put the handle at a pose, by Newton steps.
 
     Args:
-        plant: The arm, finalized, six joints.
-        handle: Its body that is held.
-        X_WH: The pose.
-        q_guess: Where to start, rad; decides which of several answers is found.
+        plant: Finalized plant of the arm, six joints.
+        handle: Body of the arm that is held.
+        X_WH: Pose of the handle to reach.
+        q_guess: Joint positions to start from, rad; they decide which of several
+            solutions is found.
 
     Raises:
-        UnreachableError: There is none near the guess, or the arm is singular there.
+        UnreachableError: There is no solution near the guess, or the arm is singular
+            there.
     """
     context = plant.CreateDefaultContext()
     q = np.array(q_guess, dtype=float)
@@ -93,10 +95,10 @@ def solve_arm_positions(
 class SimulatedArm(Diagram):
     """A device backend: a `MultibodyPlant` arm whose handle a hand holds.
 
-    The arm moves in continuous time: a discrete plant would hide the instability of
-    a sampled loop. It starts at rest with its handle where the hand wants it.
-    Gravity is off, as on a device that compensates its own weight. It shows every
-    wrench at once and tells its true pose, but for what an `ArmTwin` names.
+    The arm moves in continuous time: a discrete plant would hide the instability of a
+    sampled loop. It starts at rest with its handle where the hand wants it. Gravity is
+    off, as on a device that compensates its own weight. It shows every wrench at once
+    and tells its true pose, but for the faults that an `ArmTwin` names.
 
     .. pydrake_system::
 
@@ -126,18 +128,18 @@ class SimulatedArm(Diagram):
         """Constructs the arm.
 
         Args:
-            model: SDF of an arm of six revolute joints with the links `base` and:
-            handle_link: the one that is held.
-            X_WB: Where the base stands.
-            path: Where the hand wants P to go.
-            X_PH: Where it wants the handle in P.
-            grip: How it holds; None leaves the arm free.
-            twin: What it has of a real arm's faults; none if not given.
+            model: SDF file of an arm of six revolute joints, with a link `base`.
+            handle_link: Name of the link that is held.
+            X_WB: Pose of the base in the world.
+            path: Path along which the hand moves P.
+            X_PH: Pose in P at which the hand wants the handle.
+            grip: Grip of the hand; None leaves the arm free.
+            twin: Faults of a real arm. Defaults to none.
 
         Raises:
             UnreachableError: The path starts out of the arm's reach.
-            ValueError: The arm is no chain of six revolute joints, or a figure of the
-                twin is out of its range.
+            ValueError: The arm is not a chain of six revolute joints, or a figure of
+                the twin is out of its range.
         """
         super().__init__()
         builder = DiagramBuilder()
@@ -176,9 +178,9 @@ def weld_hand(plant: MultibodyPlant, handle: RigidBody, grip: HandGrip) -> None:
     """Adds the mass of a hand to a handle.
 
     Args:
-        plant: Not finalized.
-        handle: Its body that is held.
-        grip: How it is held.
+        plant: Plant of the arm, not finalized.
+        handle: Body of the arm that is held.
+        grip: Grip of the hand.
     """
     hand = plant.AddRigidBody(
         "hand",
@@ -196,11 +198,11 @@ def make_arm_plant(model: Path, X_WB: RigidTransform) -> MultibodyPlant:
     """Returns an arm, not finalized, continuous, without gravity.
 
     Args:
-        model: SDF with a link `base`.
-        X_WB: Where that link stands.
+        model: SDF file with a link `base`.
+        X_WB: Pose of that link in the world.
     """
     plant = MultibodyPlant(0.0)
-    # From a file Drake takes 25 ms longer, and does no more with it.
+    # Drake takes 25 ms longer to read the same model from a file.
     Parser(plant).AddModelsFromString(
         model.read_text(encoding="utf-8"), model.suffix.removeprefix(".")
     )

@@ -1,4 +1,4 @@
-"""Decides with what stiffness each contact pushes, given the others."""
+"""Decides how stiffly each contact pushes, given all other contacts."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ ClusteringMethod = Literal["shared", "octree"]
 
 @dataclass(frozen=True)
 class ClusteringRule:
-    """The rule of which contacts push, and which count as one; immutable.
+    """The rule that says which contacts push, and which count as one; immutable.
 
     Attributes:
-        method: "shared" or "octree".
-        tolerance_m: The distance t below which contacts push, m.
-        delta_m: Cluster size δ of the octree, m; None without.
+        method: Name of the method, "shared" or "octree".
+        tolerance_m: Distance t below which contacts push, m.
+        delta_m: Cluster size δ of the octree, m; None for "shared".
 
     Raises:
         ValueError: There is no such method, the tolerance is negative, or δ is not
@@ -60,7 +60,9 @@ class ClusteringRule:
             if delta_m is None or not (delta_m > 0.0 and math.isfinite(delta_m)):
                 raise ValueError(f"delta_m must be finite and positive, is {delta_m}")
         elif delta_m is not None:
-            raise ValueError(f"delta_m is of the octree; the method is {self.method!r}")
+            raise ValueError(
+                f"delta_m is for octree only; the method is {self.method!r}"
+            )
 
 
 class ContactClustering(DifferentiableSystem):
@@ -91,9 +93,9 @@ class ContactClustering(DifferentiableSystem):
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
     `load_shedding` is that of `LoadShedding`: contacts push only below its share of the
     tolerance, and those that are nearer than its cell to a deeper one along the same
-    direction are left out.
-    Under AutoDiffXd they are an `AutoDiffContactSet` and an `AutoDiffClusterSet` of
-    `drake_haptics._core`: which contacts are together or push stays.
+    direction are left out. Under AutoDiffXd `contacts` and `clusters` are an
+    `AutoDiffContactSet` and an `AutoDiffClusterSet` of `drake_haptics._core`: the same
+    contacts stay together, and the same push.
 
     Method, tolerance and δ are an abstract parameter of the Context, of type
     `ClusteringRule`; see `set_rule`. The output `rule` shows it, and has no value under
@@ -113,17 +115,17 @@ class ContactClustering(DifferentiableSystem):
     ):
         """Constructs the system.
 
-        Method, tolerance and δ hold in a Context that says no others.
+        Method, tolerance and δ are the default rule of a Context.
 
         Args:
-            method: "shared" or "octree".
-            tolerance_m: The distance t below which contacts push, m.
+            method: Name of the method, "shared" or "octree".
+            tolerance_m: Distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
             enable_load_shedding: Whether the loop sheds load, and there is a port for
                 that.
-            warns_deep: Whether the first contact that is deeper than ten tolerances
-                is warned of, where `run` does not: it waits for the end, since to
-                write may keep a loop waiting that a hand holds.
+            warns_deep: Whether to warn of the first contact that is deeper than ten
+                tolerances, for programs without `run`, which warns at the end: writing
+                may delay a loop that a hand holds.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is
@@ -151,26 +153,26 @@ class ContactClustering(DifferentiableSystem):
         )
 
     def get_rule(self, context: Context) -> ClusteringRule:
-        """Returns which contacts push, and which count as one.
+        """Returns the rule that says which contacts push, and which count as one.
 
         Args:
-            context: Of this system.
+            context: Context of this system.
         """
         self.ValidateContext(context)
         return context.get_abstract_parameter(self._rule).get_value()
 
     def set_rule(self, context: Context, rule: ClusteringRule) -> None:
-        """Changes which contacts push, and which count as one, from now on.
+        """Changes the rule, from now on.
 
-        Contacts are looked for as far as the `ContactQuery` says: a larger tolerance
-        must be told there too.
+        Contacts are searched for up to the tolerance of the `ContactQuery`: a larger
+        tolerance must be set there too.
 
         Args:
-            context: Of this system.
-            rule: The new one.
+            context: Context of this system.
+            rule: New rule.
 
         Raises:
-            TypeError: It is no `ClusteringRule`.
+            TypeError: The rule is not a `ClusteringRule`.
         """
         self.ValidateContext(context)
         if not isinstance(rule, ClusteringRule):
@@ -198,13 +200,13 @@ class ContactClustering(DifferentiableSystem):
         """Warns of a contact that is deeper than ten tolerances, the first time.
 
         Args:
-            least_distance_m: Of the deepest contact, m.
-            tolerance_m: The distance below which contacts push, m.
+            least_distance_m: Signed distance of the deepest contact, m.
+            tolerance_m: Distance below which contacts push, m.
         """
         question = question_depth(-least_distance_m, tolerance_m)
         if self._warns_deep and question:
             self._warns_deep = False
-            # Drake calls this: which of the user's lines it was is not known.
+            # Drake calls this, so that the user's line is not known.
             warnings.warn(question, SceneWarning, stacklevel=1)
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:

@@ -25,14 +25,14 @@ from drake_haptics.systems.framework.differentiable_system import (
 class ContactExtrapolator(DifferentiableSystem):
     """Moves the contacts of an earlier query to where the bodies are now.
 
-    Its features stay. The normal turns with the body whose facet it belongs to; of two
-    edges it is their cross product; of a vertex and an edge or another vertex it is the
-    direction between their closest points. Distance and witness points are those of the
-    features, but the center of pressure of flush faces stays on both bodies. That is
-    exact for a vertex over a facet and for two edges while these are the features, and
-    otherwise wrong by what is of second order in the motion since the query. No contact
-    comes or goes: what comes within the tolerance between two queries is known from the
-    next one on.
+    The features of each contact stay the same. The normal turns with the body whose
+    facet it belongs to; of two edges it is their cross product; of a vertex and an edge
+    or another vertex it is the direction between their closest points. Distance and
+    witness points are those of the features, but the center of pressure of flush faces
+    stays on both bodies. That is exact for a vertex over a facet and for two edges
+    while these are the features, and otherwise wrong to second order in the motion
+    since the query. No contact comes or goes: pieces that come within the tolerance
+    between two queries are contacts from the next query on.
 
     .. pydrake_system::
 
@@ -55,8 +55,8 @@ class ContactExtrapolator(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            tool: That of the `ContactQuery`.
-            objects: Those of the `ContactQuery`, in the same order.
+            tool: Tool of the `ContactQuery`.
+            objects: Objects of the `ContactQuery`, in the same order.
         """
         super().__init__()
         self._carrier = ContactExtrapolation(

@@ -36,7 +36,7 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 DepthSearch = Literal["tracked", "global"]
 
-# What is known before the first query. (A Value of Drake 1.58 cannot hold None.)
+# Value of the cache before the first query. (A Value of Drake 1.58 cannot hold None.)
 _NOTHING = "nothing"
 
 
@@ -45,9 +45,10 @@ class ContactObject:
     """An object that the tool can touch.
 
     Attributes:
-        name: Unique among the objects; part of port names.
-        decomposition: Its convex pieces, in its frame O.
-        X_WO: Its pose, if it never moves; None gives it input ports instead.
+        name: Name, unique among the objects; part of port names.
+        decomposition: Convex pieces of the object, in its frame O.
+        X_WO: Pose of the object in the world, if it never moves; None for an object
+            whose pose comes from input ports.
     """
 
     name: str
@@ -75,27 +76,27 @@ class ContactQuery(DifferentiableSystem):
         - contacts
         - contact_chain (with the chain)
 
-    `X_WT` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
-    `contacts` is a `drake_haptics.ContactSet`, immutable. `load_shedding` is that of
-    `LoadShedding`: contacts are looked for only up to its share of the tolerance.
+    `X_WT` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m. `contacts`
+    is a `drake_haptics.ContactSet`, immutable. `load_shedding` is that of
+    `LoadShedding`: contacts are searched for only up to its share of the tolerance.
 
     `contact_chain` is a `drake_haptics._core.ContactChain`, which goes on to forces by
-    `rule`, that of `ContactClustering`, and `gains`, that of `PenaltyForce`. A
-    `HapticTool` that reads it asks for no port between, and what `contacts` shows then
-    is what the tool's step has found. It has no value under AutoDiffXd.
+    the `rule` of `ContactClustering` and the `gains` of `PenaltyForce`. A `HapticTool`
+    that reads it asks for no port between, and `contacts` then shows the contacts that
+    the tool's step has found. It has no value under AutoDiffXd.
 
     The tolerance is an abstract parameter of the Context (index 1), a float; see
     `set_tolerance`.
 
-    The search starts from its last answer in the same Context (paper, 5.2), and first
-    from the abstract parameter `hint` (index 0): what a query of another Context knew.
-    Without one it starts from nothing, and can find another way out of a deep
-    penetration; so call `prepare_conversion` before the parameters are copied. Objects
-    with a pose of their own are placed once for each Context.
+    The search starts from its last result in the same Context (paper, 5.2), and the
+    first time from the abstract parameter `hint` (index 0), the result of a query in
+    another Context. Without a hint it starts from nothing, and can find another way out
+    of a deep penetration; so call `prepare_conversion` before the parameters are
+    copied. Objects with a pose of their own are placed once for each Context.
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
-    features stay. There every answer starts from the hint, and is a function of the
-    Context alone.
+    features stay the same. There every search starts from the hint, and its result is a
+    function of the Context alone.
     """
 
     def __init__(
@@ -113,21 +114,22 @@ class ContactQuery(DifferentiableSystem):
 
         Args:
             tool: Convex pieces of the tool, in its frame.
-            objects: What it can meet, in the order of `ContactSet.object_index`.
-            tolerance_m: Pairs up to this distance are contacts, m, in a Context that
-                says no other.
-            depth: Of two pieces in overlap: that walked to from the last answer, or
-                the least one of all; see `drake_haptics.SceneTracker`.
+            objects: Objects that the tool can meet, in the order of
+                `ContactSet.object_index`.
+            tolerance_m: Default distance up to which pairs are contacts, m.
+            depth: Penetration depth of two pieces in overlap: "tracked", to which the
+                search walks from its last result, or "global", the least of all; see
+                `drake_haptics.SceneTracker`.
             max_walk_steps: Bound on the steps of such a walk, at least 1.
             enable_load_shedding: Whether the loop sheds load, and there is a port for
                 that.
-            enable_chain: Whether there is the port `contact_chain`, and what it needs;
-                of objects that rest.
+            enable_chain: Whether there is the port `contact_chain`, with its inputs;
+                all objects must rest then.
 
         Raises:
             ValueError: The tolerance is negative or not finite, there is no object, a
-                name is used twice, there is no such depth, no step is allowed, or
-                there is a chain, and an object that moves.
+                name is used twice, there is no such depth, no step is allowed, or there
+                is a chain with an object that moves.
         """
         super().__init__()
         _check_tolerance(tolerance_m)
@@ -167,8 +169,9 @@ class ContactQuery(DifferentiableSystem):
             {self.all_input_ports_ticket(), from_tolerance},
         )
         self._law: tuple[InputPort, InputPort] | None = None
-        # The memory of a Context, which never changes an answer by more than round-off.
-        # As a cache entry, passing on another tolerance costs a tick nothing.
+        # What a Context remembers of its last search, which never changes a result by
+        # more than round-off. As a cache entry, passing on another tolerance costs a
+        # tick nothing.
         if enable_chain:
             self._law = self._declare_law()
             self._eval_tracker = self.DeclareAbstractOutputPort(
@@ -204,7 +207,7 @@ class ContactQuery(DifferentiableSystem):
         """Returns the distance up to which pairs are contacts, m.
 
         Args:
-            context: Of this system.
+            context: Context of this system.
         """
         self.ValidateContext(context)
         return context.get_abstract_parameter(self._tolerance).get_value()
@@ -212,24 +215,25 @@ class ContactQuery(DifferentiableSystem):
     def set_tolerance(self, context: Context, tolerance_m: float) -> None:
         """Changes the distance up to which pairs are contacts, from now on.
 
-        What the query knows is kept: a deep penetration keeps its way out.
+        The features of the last search are kept: a deep penetration keeps its way out.
 
         Args:
-            context: Of this system.
-            tolerance_m: The distance, m.
+            context: Context of this system.
+            tolerance_m: New distance, m.
 
         Raises:
-            ValueError: It is negative or not finite.
+            ValueError: The distance is negative or not finite.
         """
         self.ValidateContext(context)
         _check_tolerance(tolerance_m)
         context.get_mutable_abstract_parameter(self._tolerance).set_value(tolerance_m)
 
     def prepare_conversion(self, context: Context) -> None:
-        """Writes what the query knows into the parameter `hint`.
+        """Writes the last search into the parameter `hint`.
 
         Args:
-            context: Of this system; the query of it is asked if it has not been.
+            context: Context of this system, in which the query is evaluated if it has
+                not been.
         """
         self._contacts.Eval(context)
         context.get_mutable_abstract_parameter(self._hint).set_value(
@@ -239,12 +243,12 @@ class ContactQuery(DifferentiableSystem):
     def learn(
         self, context: Context, other: ContactQuery, other_context: Context
     ) -> None:
-        """Begins from what another query knows, if it is of the same pieces.
+        """Begins from the last search of another query, if that has the same pieces.
 
         Args:
-            context: Of this system, of which nothing has been asked.
-            other: It is asked if it has not been.
-            other_context: Of the other query.
+            context: Context of this system, in which nothing has been evaluated yet.
+            other: Other query, which is evaluated if it has not been.
+            other_context: Context of the other query.
         """
         if self._list_searched() == other._list_searched():
             other._contacts.Eval(other_context)
@@ -253,7 +257,7 @@ class ContactQuery(DifferentiableSystem):
             )
 
     def _list_searched(self) -> list[object]:
-        """Returns what a tracker holds for good, to be compared."""
+        """Returns the fixed properties of a tracker, for comparison."""
         pieces = [id(item.decomposition) for item in self._objects]
         return [id(self._tool), pieces, self._depth, self._max_walk_steps]
 
@@ -302,7 +306,7 @@ class ContactQuery(DifferentiableSystem):
         return tracker
 
     def _prepare_tracker(self, context: Context, value: AbstractValue) -> None:
-        """Makes the tracker of a Context, or tells it of another tolerance."""
+        """Makes the tracker of a Context, or sets its tolerance."""
         tolerance_m = self.get_tolerance(context)
         tracker = value.get_value()
         if isinstance(tracker, SceneTracker):
@@ -313,7 +317,7 @@ class ContactQuery(DifferentiableSystem):
             value.set_value(tracker)
         if self._law is None or not isinstance(tracker, ContactChain):
             return
-        # A query by itself, for its contacts alone, needs no law.
+        # A query that is used for its contacts alone needs no law.
         if all(port.HasValue(context) for port in self._law):
             rule, gains = (port.Eval(context) for port in self._law)
             tracker.set_law(
@@ -343,15 +347,15 @@ class ObjectMotions:
     """Poses and velocities of all objects; those that move are read from ports.
 
     Gives its system the input ports `X_WO_<name>` (7) and `V_WO_<name>` (6) for each
-    object without a pose of its own. The others are placed here, once.
+    object without a pose of its own. All other objects are placed here, once.
     """
 
     def __init__(self, system: LeafSystem, objects: Sequence[ContactObject]):
         """Declares the ports.
 
         Args:
-            system: Under construction.
-            objects: In the order of the query.
+            system: System under construction, which gets the ports.
+            objects: Objects in the order of the query.
         """
         self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
         self._X_WO_ports: list[InputPort] = []
@@ -365,7 +369,8 @@ class ObjectMotions:
         for i, item in enumerate(objects):
             if item.X_WO is not None:
                 self._p_WO[i] = item.X_WO.translation()
-        # There can be a thousand: what rests crosses to the core only here.
+        # There can be a thousand objects: those at rest are passed to the core only
+        # here.
         self._at_rest = ObjectFrames(self._p_WO, self._V_WO)
 
     def read(self, context: Context) -> ObjectFrames:

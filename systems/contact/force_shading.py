@@ -49,7 +49,7 @@ class ForceShading(DifferentiableSystem):
     any energy: see the documentation for what a closed path can gain.
 
     Under AutoDiffXd both `contacts` are a `drake_haptics._core.AutoDiffContactSet`.
-    Derivatives of the normals are complete: as they turn with the bodies and with the
+    Derivatives of the normals are complete: normals turn with the bodies and with the
     place on the triangle. At an edge between triangles they are those of the triangle
     that the witness point is taken to be on.
     """
@@ -65,15 +65,14 @@ class ForceShading(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            tool: That of the `ContactQuery`.
-            objects: Those of the `ContactQuery`, in the same order.
-            crease_angle_deg: Edges of less than this dihedral angle are smooth,
-                degrees.
-            shaded: Whether each object is. The tool is if one of them is.
+            tool: Tool of the `ContactQuery`.
+            objects: Objects of the `ContactQuery`, in the same order.
+            crease_angle_deg: Dihedral angle below which an edge is smooth, degrees.
+            shaded: Whether each object is shaded. The tool is shaded if one of them is.
 
         Raises:
-            ValueError: The angle is not in [0, 180], or `shaded` has not one entry
-                for each object.
+            ValueError: The angle is not in [0, 180], or `shaded` does not have one
+                entry for each object.
         """
         super().__init__()
         if not 0.0 <= crease_angle_deg <= 180.0:

@@ -43,7 +43,8 @@ class FrictionReaction(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            objects: Those of the `ContactQuery`, in the same order; one moves at least.
+            objects: Objects of the `ContactQuery`, in the same order; at least one of
+                them moves.
         """
         super().__init__()
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())

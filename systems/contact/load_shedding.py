@@ -19,15 +19,15 @@ from drake_haptics.systems.framework.differentiable_system import (
     DifferentiableSystem,
 )
 
-# What is dropped, in this order.
+# Work that is dropped, in this order.
 SHED_STAGES = ("drawing", "far near-contacts", "fine clusters")
-# A stage is dropped within so many ticks over the budget: one that the operating
-# system has delayed drops next to nothing, and what is felt changes smoothly.
+# Ticks over the budget within which a stage is dropped: a single tick that the
+# operating system has delayed drops next to nothing, and forces change smoothly.
 _TICKS_TO_DROP = 50
-# And comes back within so many that are well below it.
+# Ticks well below the budget within which a stage comes back.
 _TICKS_TO_RESTORE = 1000
 _WELL_BELOW = 0.8
-# Near contacts are looked for, and push, as far as this share of the tolerance.
+# Share of the tolerance up to which near contacts are always found, and push.
 _LEAST_REACH = 0.25
 
 
@@ -35,10 +35,10 @@ class TickMeter:
     """Times the work of each tick, from its first event to its last."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter):
-        """Begins with no tick.
+        """Begins without a tick.
 
         Args:
-            clock: Reads the time, s.
+            clock: Function that returns the time, s.
         """
         self._clock = clock
         self._start_s = math.inf
@@ -54,7 +54,7 @@ class TickMeter:
         self._start_s = self._clock()
 
     def end(self) -> None:
-        """Notes that it has ended; between two ticks that says nothing."""
+        """Notes that the tick has ended; does nothing between two ticks."""
         if self._start_s < math.inf:
             self._busy_s = self._clock() - self._start_s
             self._start_s = math.inf
@@ -72,15 +72,15 @@ class TickEnd(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            meter: That of the `LoadShedding`.
-            period_s: From tick to tick, s.
+            meter: Meter of the `LoadShedding`.
+            period_s: Time from tick to tick, s.
 
         Raises:
             RuntimeError: The period is not positive.
         """
         super().__init__()
         self._meter = meter
-        # Publish events of a time come when all else of the tick before is done.
+        # Publish events of a time come after all other work of the tick before.
         self.DeclarePeriodicPublishEvent(period_s, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus:
@@ -94,13 +94,13 @@ class LoadShedding(DifferentiableSystem):
     Work is dropped in stages, each by degrees, and comes back in the reverse order:
 
     1. drawing: no new frame is begun;
-    2. far near-contacts: the distance within which contacts are looked for, push and
+    2. far near-contacts: the distance within which contacts are searched for, push and
        brake shrinks to a quarter;
     3. fine clusters: of contacts that are nearer to each other than a cell, and whose
        normals differ by less than 45°, only the deepest pushes.
 
-    What penetrates is never left without a contact that is as deep, and the device's
-    limits, checks and gate are no work that could be dropped.
+    A penetration always keeps its deepest contact, and the device's limits, checks and
+    gate are never dropped.
 
     .. pydrake_system::
 
@@ -113,8 +113,9 @@ class LoadShedding(DifferentiableSystem):
     of the cell, m, 0 while all clusters count. It is the state, one discrete group,
     updated every period from 0 s on.
 
-    The time of the last tick is an input that no Context has: it is read once per tick.
-    It must be the first system of its diagram with an update, and a `TickEnd` the last.
+    The time of the last tick is an input that is not in the Context: it is read once
+    per tick. The system must be the first one of its diagram with an update, and a
+    `TickEnd` the last.
     """
 
     def __init__(
@@ -123,10 +124,10 @@ class LoadShedding(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            meter: Times the ticks.
-            period_s: From tick to tick, s.
-            budget_s: What the work of a tick may take, s.
-            largest_cell_m: Size of the cell where all is dropped, m.
+            meter: Meter that times the ticks.
+            period_s: Time from tick to tick, s.
+            budget_s: Time that the work of a tick may take, s.
+            largest_cell_m: Size of the cell when all stages are dropped, m.
 
         Raises:
             ValueError: A period, the budget or the cell is not positive.

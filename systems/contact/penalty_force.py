@@ -33,15 +33,16 @@ _GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
 
 @dataclass(frozen=True, eq=False)
 class ContactGains:
-    """Stiffness, damping and friction of each object's contact; immutable.
+    """Stiffness and damping of each object's contact; immutable.
 
     Attributes:
         stiffness_N_per_m: k of each object, (n,), N/m.
         damping_Ns_per_m: k_v of each object, (n,), N·s/m.
-        materials: Both as the core reads them.
+        materials: Both gains in the form that the core reads.
 
     Raises:
-        ValueError: A gain is negative or not finite, or not one of a list.
+        ValueError: A gain is negative or not finite, or the gains are not two lists of
+            the same length.
     """
 
     stiffness_N_per_m: np.ndarray
@@ -74,17 +75,16 @@ class ContactGains:
         object.__setattr__(self, "materials", materials)
 
     def __deepcopy__(self, memo: object) -> ContactGains:
-        """Returns itself, so that it crosses into copies of a Context."""
+        """Returns itself, so that copies of a Context share it."""
         return self
 
 
 class PenaltyForce(DifferentiableSystem):
     """Elastic force below the tolerance, with damping that never pulls.
 
-    Each cluster pushes with k times its compression along n at its point, and with
-    k_v times the speed of approach and its damping share more where the surfaces
-    approach. With the octree's clusters that is (k (t - d) - k_v v) n of the paper
-    (Eq. 6-10).
+    Each cluster pushes along n at its point with k times its compression, and where the
+    surfaces approach also with k_v times the speed of approach times its damping share.
+    With the octree's clusters that is (k (t - d) - k_v v) n of the paper (Eq. 6-10).
 
     .. pydrake_system::
 
@@ -108,7 +108,7 @@ class PenaltyForce(DifferentiableSystem):
 
     * `clusters` is a `drake_haptics._core.ClusterSet`.
     * `contact_chain` is that of `ContactQuery`. With it the core finds the contacts of
-      `F_To_W`, to the same bits as those of `clusters`.
+      `F_To_W`, bit for bit those of `clusters`.
     * `wrench_model` (78) is [F; K; B]: the wrench on the tool at its origin in the
       world, N·m and N, and its 6 x 6 stiffness and damping, row-major, with
       F(δ, V + dV) ≈ F - K δ - B dV, δ = [rotation vector; translation] of the tool.
@@ -140,12 +140,12 @@ class PenaltyForce(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            objects: Those of the `ContactQuery`, in the same order.
-            stiffness_N_per_m: k of each object, N/m, in a Context that says no other.
-            damping_Ns_per_m: k_v of each object, N·s/m, the same.
+            objects: Objects of the `ContactQuery`, in the same order.
+            stiffness_N_per_m: Default stiffness k of each object, N/m.
+            damping_Ns_per_m: Default damping k_v of each object, N·s/m.
             enable_chain: Whether there is the port `contact_chain`.
-            warn_of_depth: That of `ContactClustering`, which the chain goes past, where
-                it is to warn.
+            warn_of_depth: Function `warn_of_depth` of the `ContactClustering`, which
+                the chain bypasses. Defaults to no warning.
 
         Raises:
             ValueError: A gain is negative or not finite, or there is not one for
@@ -189,32 +189,32 @@ class PenaltyForce(DifferentiableSystem):
         self.DeclareAbstractOutputPort(
             "gains", Value[object], self._show_gains, {self.pa_ticket()}
         )
-        # A plant asks for the wrench on the tool and the reaction of objects that move:
-        # these share the answer that `contact_wrench` keeps. A haptic loop asks for
-        # `wrench_model` alone, and to call the core then takes less time.
+        # A plant asks for the wrench on the tool and for the reaction on objects that
+        # move: these share the result that `contact_wrench` keeps. A haptic loop asks
+        # for `wrench_model` alone, and calling the core then takes less time.
         self._eval_wrench: Callable[[Context], PenaltyWrench] = (
             self._contact_wrench.Eval if self._moving else self._calc_wrench
         )
 
     def get_gains(self, context: Context) -> ContactGains:
-        """Returns how each object answers contact.
+        """Returns the stiffness and damping of each object.
 
         Args:
-            context: Of this system.
+            context: Context of this system.
         """
         self.ValidateContext(context)
         return context.get_abstract_parameter(self._gains).get_value()
 
     def set_gains(self, context: Context, gains: ContactGains) -> None:
-        """Changes how each object answers contact, from now on.
+        """Changes the stiffness and damping of each object, from now on.
 
         Args:
-            context: Of this system.
-            gains: One of each kind for each object, in their order.
+            context: Context of this system.
+            gains: Stiffness and damping of each object, in their order.
 
         Raises:
-            TypeError: They are no `ContactGains`.
-            ValueError: There is not one for each object.
+            TypeError: The gains are not `ContactGains`.
+            ValueError: There is not one gain of each kind for each object.
         """
         self.ValidateContext(context)
         if not isinstance(gains, ContactGains):
@@ -225,7 +225,7 @@ class PenaltyForce(DifferentiableSystem):
     def differentiate(
         self, port: str, at: AutoDiffPoint
     ) -> AutoDiffVector | AutoDiffPenaltyWrench:
-        """Returns a wrench, or all that is known of them, with derivatives."""
+        """Returns a wrench, or the whole `contact_wrench`, with derivatives."""
         X_WT = at["X_WT"]
         p_WO, V_WO = self._motions.differentiate(at)
         gains: ContactGains = at.parameters[self._gains]
@@ -247,7 +247,7 @@ class PenaltyForce(DifferentiableSystem):
         return wrench.F_To_W if port == "F_To_W" else wrench.wrench_model
 
     def _read(self, context: Context) -> tuple[Any, ...]:
-        """Returns what the law is a function of."""
+        """Returns the arguments of the law."""
         return (
             self._eval_clusters(context),
             self._eval_X_WT(context),
@@ -257,7 +257,7 @@ class PenaltyForce(DifferentiableSystem):
         )
 
     def _check_number(self, gains: ContactGains) -> None:
-        """Refuses gains that are not one for each object."""
+        """Raises ValueError unless there is one gain of each kind for each object."""
         for name in _GAINS:
             values = getattr(gains, name)
             if len(values) != self._num_objects:

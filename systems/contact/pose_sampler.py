@@ -23,8 +23,8 @@ _IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 class PoseSampler(DifferentiableSystem):
     """Holds poses as they were at the last sample.
 
-    Its outputs change only when it samples, so that what is calculated from them is
-    calculated no more often.
+    Its outputs change only when it samples, so that systems that read them calculate no
+    more often.
 
     .. pydrake_system::
 
@@ -46,7 +46,7 @@ class PoseSampler(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            names: Of the objects that move.
+            names: Names of the objects that move.
             period_s: Time between two samples, s.
 
         Raises:
@@ -71,7 +71,7 @@ class PoseSampler(DifferentiableSystem):
         )
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
-        """Returns the poses that are sampled, with their derivatives."""
+        """Returns the sampled poses with their derivatives."""
         poses = [at[port.get_name()] for port in self._inputs]
         return AutoDiffVector(
             np.concatenate([pose.value for pose in poses]),

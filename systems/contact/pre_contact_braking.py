@@ -23,16 +23,16 @@ from drake_haptics.systems.framework.differentiable_system import (
 class PreContactBraking(DifferentiableSystem):
     """Viscous force against the approach of surfaces that do not touch yet.
 
-    At each contact with 0 < d < D, D the braking's distance, the tool is pushed with
-    b s w v along the normal, v the speed of approach at the contact; never pulled,
-    never held back when it leaves (McNeely, Puterbaugh and Troy 1999). The profile
-    w = 4 (d/D) (1 - d/D) fades at both ends, so that the wrench is continuous in pose
-    and velocity. On a straight way to a surface a mass m loses 2 b D / (3 m) of its
-    speed, at any speed.
+    At each contact with 0 < d < D, where D is the braking distance, the tool is pushed
+    with b s w v along the normal, where v is the speed of approach at the contact; it
+    is never pulled, nor held back when it leaves (McNeely, Puterbaugh and Troy 1999).
+    The profile w = 4 (d/D) (1 - d/D) fades at both ends, so that the wrench is
+    continuous in pose and velocity. On a straight path to a surface a mass m loses
+    2 b D / (3 m) of its speed, at any speed.
 
-    The share s of a contact keeps those with like normals from adding up, however
-    finely a surface is cut, and leaves others alone (core/law/braking.h). The damping
-    is at most 1.1 b where all normals are alike, and 4.4 b along any direction.
+    The share s keeps contacts with like normals from adding up, however finely a
+    surface is cut, and leaves all other contacts alone (core/law/braking.h). The
+    damping is at most 1.1 b where all normals are alike, and 4.4 b along any direction.
 
     .. pydrake_system::
 
@@ -48,10 +48,10 @@ class PreContactBraking(DifferentiableSystem):
         - wrench_model
         - F_O_W (with objects that move)
 
-    `contacts` is a `drake_haptics.ContactSet`; contacts must have been looked for up
+    `contacts` is a `drake_haptics.ContactSet`; contacts must have been searched for up
     to D at least. Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
-    `load_shedding` is that of `LoadShedding`: D is as much less as it says.
+    `load_shedding` is that of `LoadShedding`: D shrinks to its share.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
@@ -75,9 +75,9 @@ class PreContactBraking(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            objects: Those of the `ContactQuery`, in the same order.
-            damping_Ns_per_m: b, the damping half-way to the surface, N·s/m.
-            distance_m: D, where braking begins, m.
+            objects: Objects of the `ContactQuery`, in the same order.
+            damping_Ns_per_m: Damping b half-way to the surface, N·s/m.
+            distance_m: Distance D at which braking begins, m.
             enable_load_shedding: Whether the loop sheds load, and there is a port for
                 that.
 
@@ -114,7 +114,7 @@ class PreContactBraking(DifferentiableSystem):
             self.DeclareVectorOutputPort(
                 "F_O_W", len(self._moving), self._calc_F_O_W, from_inputs
             )
-            # The reaction is asked for beside the wrench on the tool.
+            # The wrench on the tool and the reaction share one result.
             shared = self.DeclareCacheEntry(
                 description="wrenches",
                 value_producer=ValueProducer(

@@ -57,7 +57,7 @@ class StickSlipFriction(DifferentiableSystem):
     * `contact_wrench` is their `drake_haptics._core.PenaltyWrench`, whose forces are
       the normal forces.
     * `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
-      documents it. B is zero: the implicit step damps what sticks.
+      documents it. B is zero: the implicit step damps contacts that stick.
     * `friction_force` is the `drake_haptics._core.FrictionStep` with the force on the
       tool at each cluster, whether it slides, and the elastic energy.
 
@@ -89,12 +89,13 @@ class StickSlipFriction(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            objects: Those of the `ContactQuery`, in the same order.
+            objects: Objects of the `ContactQuery`, in the same order.
             period_s: The tick, s.
-            coefficient: μ of sliding of each object. One at 0 has no friction.
-            break_away_m: How far a contact gives way before it slips, m.
-            static_ratio: r, static over sliding coefficient.
-            reach_m: A contact whose place changes by this from one tick to the next
+            coefficient: Sliding coefficient μ of each object; at 0 the object has no
+                friction.
+            break_away_m: Distance that a contact gives way before it slips, m.
+            static_ratio: Ratio r of the static to the sliding coefficient.
+            reach_m: Change of a contact's place from one tick to the next at which it
                 keeps half of its friction, m.
 
         Raises:
@@ -124,7 +125,7 @@ class StickSlipFriction(DifferentiableSystem):
         ]
         self.DeclareDiscreteState(self._model.state_size)
         from_all = {self.all_input_ports_ticket(), self.xd_ticket()}
-        # Output and update of a tick share one answer of the core.
+        # Output and update of a tick share one result of the core.
         self._step = self.DeclareCacheEntry(
             description="step",
             value_producer=ValueProducer(

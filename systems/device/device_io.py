@@ -40,9 +40,9 @@ class DeviceIo(Diagram):
     """Reads a device's handle and writes the wrench that it is to show.
 
     The handle is read in the updates of a tick, before any other system samples it, and
-    the wrench that follows from it is written as soon as the tick is computed: the
-    loop adds no delay of its own. Both talk to the one device there is, so two
-    Contexts of this system are not independent.
+    the wrench that follows from it is written as soon as the tick is computed: the loop
+    adds no delay of its own. Both talk to the same device, so two Contexts of this
+    system are not independent.
 
     .. pydrake_system::
 
@@ -61,7 +61,7 @@ class DeviceIo(Diagram):
       be left unconnected.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
-    * `reading` (abstract) is the `DeviceReading` that both are of.
+    * `reading` (abstract) is the `DeviceReading` from which both come.
 
     The state is two discrete groups, [X_WH; V_WH] (13) and the numbers of the reading
     (24), both replaced by an unrestricted update every period from 0 s on. It raises
@@ -79,9 +79,9 @@ class DeviceIo(Diagram):
 
         Args:
             backend: The device, open.
-            X_WB: Where its base stands in the world.
+            X_WB: Pose of the device's base in the world.
             period_s: The tick, s.
-            first_reading: What the outputs show before the first tick.
+            first_reading: Reading that the outputs show before the first tick.
 
         Raises:
             ValueError: The period is not positive.
@@ -108,8 +108,8 @@ class DeviceIo(Diagram):
         """Starts the backend's `start_contact_servo` with a tool at rest.
 
         Args:
-            stepper: Of the servo's period, its objects posed.
-            X_WT: Where the tool is.
+            stepper: Stepper with the servo's period, its objects posed.
+            X_WT: Pose of the tool in the world.
 
         Raises:
             DeviceError: The backend has no such thread.
@@ -143,8 +143,8 @@ class _Exchange(LeafSystem):
         )
         motion = self._frame.change_motion(first_reading.X_BH, first_reading.V_BH)
         self.DeclareStateOutputPort("handle_state", self.DeclareDiscreteState(motion))
-        # Drake copies the state twice a tick: numbers take a tenth of what an object
-        # of Python takes.
+        # Drake copies the state twice a tick: numbers take a tenth of the time that a
+        # Python object takes.
         self._reading = self.DeclareDiscreteState(_to_vector(first_reading))
         self.DeclareAbstractOutputPort(
             "reading",
@@ -182,7 +182,7 @@ class _Exchange(LeafSystem):
         )
 
     def _calc_slopes(self, context: Context) -> tuple[np.ndarray, ...]:
-        """Returns K_B and B_B, or nothing where nobody uses or tells them."""
+        """Returns K_B and B_B, or nothing where they are not used or not connected."""
         if self._slopes is None or not self._slopes.HasValue(context):
             return ()
         return self._frame.change_slopes_back(self._slopes.Eval(context))

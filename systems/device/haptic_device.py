@@ -14,7 +14,7 @@ from pydrake.systems.framework import (
 from drake_haptics._core import ConstraintStepper, ContactServo
 from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold
 
-# Of a stepper and the tool's first pose.
+# Takes a stepper and the tool's first pose.
 _StartServo = Callable[[ConstraintStepper, RigidTransform], ContactServo]
 
 
@@ -59,7 +59,7 @@ class HapticDevice(Diagram):
         """Constructs the device.
 
         Args:
-            backend: What is behind the port, not yet in a diagram.
+            backend: System behind the port, not yet in a diagram.
             period_s: The tick, s.
             max_force_N: Largest force shown, N.
             max_torque_Nm: Largest torque shown, N·m.
@@ -107,10 +107,10 @@ class HapticDevice(Diagram):
 
     @property
     def start_contact_servo(self) -> _StartServo | None:
-        """Has a `DeviceIo` start a thread that solves contact; None for others."""
+        """Function that starts a `DeviceIo`'s contact thread; None for others."""
         return self._start_contact_servo
 
     @property
     def wants_slopes(self) -> bool:
-        """Tells whether there is a backend that can use `handle_slopes`."""
+        """Tells whether the backend can use `handle_slopes`."""
         return self._wants_slopes

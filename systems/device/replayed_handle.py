@@ -1,4 +1,4 @@
-"""A device backend that moves its handle as a log says."""
+"""A device backend that moves its handle as in a log."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class ReplayedHandle(Diagram):
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
 
-    From tick k to the next one both are those that the updates of tick k saw when the
-    run was recorded; after the last tick they stay.
+    From tick k to the next one both are as the updates of tick k saw them when the run
+    was recorded; after the last tick they stay the same.
     """
 
     def __init__(self, X_WH: np.ndarray, V_WH: np.ndarray, period_s: float):
@@ -40,7 +40,7 @@ class ReplayedHandle(Diagram):
 
         Args:
             X_WH: (n, 7) poses of the handle at each tick, n at least 1.
-            V_WH: (n, 6) spatial velocities.
+            V_WH: (n, 6) spatial velocities of the handle.
             period_s: The tick, s.
 
         Raises:
@@ -51,7 +51,7 @@ class ReplayedHandle(Diagram):
         check_positive(period_s=period_s)
         if not len(X_WH) == len(V_WH) > 0:
             raise ValueError(
-                f"X_WH and V_WH must have as many ticks and at least one, have"
+                f"X_WH and V_WH must have equally many ticks, at least one, have"
                 f" {len(X_WH)} and {len(V_WH)}"
             )
         builder = DiagramBuilder()

@@ -31,16 +31,16 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics._core import AutoDiffVector, make_witness_override
 
-# Of a system without witness functions. After each unrestricted update Drake asks every
-# Python system for them, and not to find the override takes longer than to call it.
+# Override for systems without witness functions. After each unrestricted update Drake
+# asks every Python system for them, and a missing override takes longer than a call.
 get_no_witness_functions = make_witness_override()
 
 
 class AutoDiffPoint:
     """The point at which a system is differentiated: its inputs, state and time.
 
-    All vectors have derivatives by the same D variables; what does not depend on
-    them has zeros.
+    All vectors have derivatives by the same D variables; entries that do not depend on
+    them have zeros.
 
     Attributes:
         state: The discrete state, all groups one after another.
@@ -54,7 +54,7 @@ class AutoDiffPoint:
         context: Context_[AutoDiffXd],
         inputs: Iterable[int],
     ):
-        """Reads those of some inputs of a twin that have a value.
+        """Reads the given inputs of a twin that have a value.
 
         Raises:
             ValueError: An abstract input carries no derivatives, or inputs have
@@ -80,7 +80,7 @@ class AutoDiffPoint:
         vectors["\0state"] = np.concatenate([np.zeros(0), *state])
         vectors["\0time"] = np.array([context.get_time()])
         self.num_derivatives = _find_num_derivatives(twin, vectors, self._inputs)
-        # What is constant upstream has no derivatives yet.
+        # Values that are constant upstream have no derivatives yet.
         for name, value in self._inputs.items():
             if value.num_derivatives < self.num_derivatives:
                 self._inputs[name] = value.with_variables(self.num_derivatives)
@@ -97,16 +97,16 @@ class AutoDiffPoint:
         """Returns an input: an `AutoDiffVector`, or the value of an abstract port.
 
         Raises:
-            ValueError: It is neither connected nor fixed, or not one that the output
-                depends on.
+            ValueError: The input is neither connected nor fixed, or the output does not
+                depend on it.
         """
         if port not in self._inputs:
             raise ValueError(f"input {port} of {self._system} has no value")
         return self._inputs[port]
 
 
-# Both ways: `ToAutoDiffXd` of pydrake 1.51 denies a system of its own (not one in a
-# diagram) that converts one way only.
+# Conversion both ways: `ToAutoDiffXd` of pydrake 1.51 refuses a system outside of a
+# diagram that converts one way only.
 @TemplateSystem.define("_Convertible_", T_list=[float, AutoDiffXd])
 def _Convertible_(T: type) -> type:
     if T is float:
@@ -151,13 +151,13 @@ class DifferentiableSystem(_Convertible):
     twin draws and prints nothing.
 
     A system defines `differentiate` if it has outputs, and `differentiate_update` if it
-    has state. What else a system can have, a conversion refuses: another state, numeric
-    parameters, discrete state without one periodic update.
+    has state. A conversion refuses all else that a system can have: other state,
+    numeric parameters, discrete state without one periodic update.
 
     Attributes:
         undifferentiated: Names of inputs that the twin does not read, and of outputs
-            that have no value there: through them systems of doubles hand over what
-            makes a tick faster, and nothing that is not at other ports too.
+            that have no value there. Through them systems of doubles hand over data
+            that makes a tick faster and is available at other ports too.
     """
 
     undifferentiated: frozenset[str] = frozenset()
@@ -169,12 +169,13 @@ class DifferentiableSystem(_Convertible):
 
         Args:
             port: Name of the output.
-            at: Where. Has the inputs that the output depends on directly.
+            at: Point of differentiation, with the inputs that the output depends on
+                directly.
 
         Returns:
-            An `AutoDiffVector`; of an abstract output, a value that carries
-            derivatives: it has `num_derivatives`, and `with_variables` where that
-            can be zero.
+            An `AutoDiffVector`; for an abstract output, a value that carries
+            derivatives: it has `num_derivatives`, and `with_variables` where that can
+            be zero.
         """
 
     @abstractmethod
@@ -186,8 +187,9 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
     """Declares in a twin all that a system has.
 
     Raises:
-        ValueError: It says that it has none, or has something that a twin cannot have.
-        TypeError: It lacks a method that a twin would call.
+        ValueError: The system says that it has no derivatives, or has something that a
+            twin cannot have.
+        TypeError: The system lacks a method that a twin would call.
     """
     if hasattr(system, "no_derivatives"):
         raise ValueError(
@@ -307,7 +309,7 @@ def _update(
 
 
 def _to_constants(values: np.ndarray) -> np.ndarray:
-    """Returns scalars of Drake's without derivatives."""
+    """Returns Drake's scalars without derivatives."""
     return InitializeAutoDiff(values, np.zeros((values.size, 0))).ravel()
 
 
@@ -342,7 +344,7 @@ def _find_num_derivatives(
 
 
 def _to_core(vector: np.ndarray, num_derivatives: int) -> AutoDiffVector:
-    """Hands scalars of Drake's to the core; constants get zero derivatives."""
+    """Converts Drake's scalars to the core's; constants get zero derivatives."""
     gradient = ExtractGradient(vector.reshape(-1, 1))
     if gradient.shape[1] == 0:
         gradient = np.zeros((len(vector), num_derivatives))
@@ -350,7 +352,7 @@ def _to_core(vector: np.ndarray, num_derivatives: int) -> AutoDiffVector:
 
 
 def _from_core(vector: AutoDiffVector) -> np.ndarray:
-    """Takes scalars from the core."""
+    """Converts the core's scalars to Drake's."""
     return InitializeAutoDiff(vector.value, vector.gradient).ravel()
 
 
@@ -359,12 +361,12 @@ def export_parts(
 ) -> None:
     """Exports consecutive parts of a vector output as outputs of the diagram.
 
-    Drake's own system splits it, which takes no time to speak of beside a port that
+    Drake's own system splits it, which takes little time compared with a port that
     Python calculates.
 
     Args:
         builder: Builder of the diagram.
-        vector: Of a system in it.
+        vector: Output port of a system in the diagram.
         sizes: Size of each part by the name of its port, in order.
     """
     parts = builder.AddNamedSystem("parts", Demultiplexer(list(sizes.values())))
@@ -381,13 +383,15 @@ def import_parts(
 ) -> None:
     """Exports consecutive parts of a vector input as inputs of the diagram.
 
-    Drake's own system joins them; a port that Python reads takes longer, in every tick.
+    Drake's own system joins them: one more port that Python reads takes longer, at
+    every tick.
 
     Args:
         builder: Builder of the diagram.
-        vector: Of a system in it.
+        vector: Output port of a system in the diagram.
         sizes: Size of each part by the name of its port, in order.
-        own: The last part, of a system in the diagram; no input.
+        own: Output port of a system in the diagram that feeds the last part, which is
+            no input then.
     """
     all_sizes = [*sizes.values(), *([] if own is None else [own.size()])]
     joint = builder.AddNamedSystem("joint", Multiplexer(all_sizes))

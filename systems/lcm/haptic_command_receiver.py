@@ -76,7 +76,7 @@ class HapticCommandReceiver(LeafSystem):
             period_s: The device's tick, s.
             max_force_N: Largest force ever shown, N.
             max_torque_Nm: Largest torque ever shown, N·m.
-            max_ttl_s: The longest that a command holds without a newer one, s.
+            max_ttl_s: Longest time that a command holds without a newer one, s.
 
         Raises:
             ValueError: A time or a limit is out of range.
@@ -114,7 +114,8 @@ class HapticCommandReceiver(LeafSystem):
         memory = value.get_value()
         gate, command = memory.gate, self._command.Eval(context)
         # The subscriber shows a message until the next one comes, and at first an empty
-        # one. Nor is one whose session has more bits than a gate knows.
+        # one. A message whose session has more bits than a gate knows is not passed on
+        # either.
         if command is not memory.seen and 0 < command.session <= _UINT32:
             gate.receive(now_ns, _pack(command))
         F_Ho_B = gate.step(now_ns, self._X_BH.Eval(context), self._V_BH.Eval(context))
@@ -141,7 +142,7 @@ class HapticCommandReceiver(LeafSystem):
 
 
 def _pack(command: lcmt_haptic_command) -> bytes:
-    """Returns the packet of a message, for the gate to judge."""
+    """Returns the packet of a message, for the gate to check."""
     return _core.pack_command(
         session=command.session,
         sequence=command.sequence & _UINT32,

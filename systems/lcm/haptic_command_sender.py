@@ -32,10 +32,10 @@ class HapticCommandSender(LeafSystem):
     * `F_Ho_B` (6) is the wrench [τ; f] to show on the handle at Ho in the device's
       base, N·m and N.
     * `enable` (1) asks for force where above one half; always where not connected. A
-      device leaves a fault when it is asked for none, and then for some again.
+      device leaves a fault when it is asked for no force, and then for force again.
 
-    A device takes force only from a host that it has heard ask for none, so all
-    messages before 0.05 s do.
+    A device takes force only from a host that has asked it for no force before, so all
+    messages before 0.05 s do that.
 
     The message's number is that of the period that the context's time is in, so it
     must be published once per period. One such system serves one run: the numbers of
@@ -46,8 +46,8 @@ class HapticCommandSender(LeafSystem):
         """Constructs the system.
 
         Args:
-            period_s: From message to message, s.
-            ttl_s: How long a wrench holds without a newer one, s.
+            period_s: Time from message to message, s.
+            ttl_s: Time that a wrench holds without a newer one, s.
 
         Raises:
             ValueError: A time is out of range.

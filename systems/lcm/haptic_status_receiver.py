@@ -59,7 +59,7 @@ class HapticStatusReceiver(LeafSystem):
             )
 
     def _make_calc(self, field: str) -> Callable[[Context, BasicVector], None]:
-        """Returns what calculates the port of a field."""
+        """Returns the function that calculates the port of a field."""
 
         def calc(context: Context, output: BasicVector) -> None:
             status = self._status.Eval(context)

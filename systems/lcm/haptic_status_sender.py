@@ -42,7 +42,7 @@ class HapticStatusSender(LeafSystem):
         """Constructs the system.
 
         Args:
-            period_s: From message to message, s.
+            period_s: Time from message to message, s.
 
         Raises:
             ValueError: The period is not positive.

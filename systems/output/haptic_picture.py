@@ -22,28 +22,28 @@ from drake_haptics.systems.output.meshcat_shapes import (
 _ROOT = "/haptics"
 _MAX_CONTACTS = 64
 _MAX_CLUSTERS = 16
-# Objects are seen through, because much of what happens is inside.
+# Objects are translucent, because much of the contact is inside of them.
 _ENVIRONMENT_ALPHA = 0.45
 # Lengths as shares of the tool's size (the diagonal of its box), so that tools of any
 # size give a readable picture.
 _CONTACT_ARROW = 0.06
-# Of the device's largest force or torque: where all of the tool is in the picture this
-# is at most a third of it.
+# Arrow of the device's largest force or torque: at most a third of the picture where
+# that shows all of the tool.
 _LONGEST_ARROW = 1 / 3
 _SHORTEST_ARROW = 0.05
 _GRIP_RADIUS = 0.022
 _LINE_RADIUS = 0.006
-# Of the tool while virtual facets are shown, which are inside of it.
+# Opacity of the tool while virtual facets are shown, which are inside of it.
 _TOOL_SEEN_THROUGH = 0.35
-# What a view shows or hides, below the root.
+# Folders that a view shows or hides, below the root.
 _FOLDERS = {
     "ghost": ("handle", "grip", "coupling"),
     "contacts": ("contacts",),
     "forces": ("force", "torque", "clusters", "friction"),
 }
-# A force, N, or torque, N·m, that is smaller has no direction.
+# A smaller force, N, or torque, N·m, has no direction.
 _NO_SIZE = 1e-6
-# A line that is shorter has no direction.
+# A shorter line has no direction.
 _NO_LENGTH_M = 1e-9
 PICTURE_VIEWS = MappingProxyType(
     {
@@ -54,15 +54,15 @@ PICTURE_VIEWS = MappingProxyType(
         "forces": "Forces",
     }
 )
-"""Names of the views and what people read.
+"""Names of the views, and their labels.
 
 `pieces` colors each convex piece; `virtual` shows, translucent, the facets of pieces
-that are not on the mesh; `ghost` is where the handle wants the tool, with the coupling;
-`contacts` are the small arrows, `forces` the large ones.
+that are not on the mesh; `ghost` shows where the handle wants the tool, with the
+coupling; `contacts` are the small arrows, `forces` the large ones.
 """
 
 SHOWN_AT_FIRST = frozenset({"ghost", "contacts", "forces"})
-"""Views that are to be seen until somebody hides them."""
+"""Views that are shown at first."""
 
 
 class HapticPicture:
@@ -72,8 +72,8 @@ class HapticPicture:
     `coupling`, `force`, `torque`, `contacts`, `clusters`, `friction` and
     `objects/<name>`.
 
-    What moves things works as it is iterated over, so that a frame can be drawn a
-    little at a time.
+    Most methods that draw return an iterator, so that a frame can be drawn a little at
+    a time.
     """
 
     def __init__(
@@ -92,14 +92,14 @@ class HapticPicture:
         Args:
             meshcat: Meshcat to draw in.
             tool: The tool, in its frame T.
-            objects: What it meets; those that never move are placed.
+            objects: Objects that the tool meets; those that never move are placed.
             X_HT: Pose of the tool in the handle at rest.
-            max_force_N: Of the longest arrow of a force, N.
-            max_torque_Nm: Of the longest arrow of a torque, N·m.
+            max_force_N: Force that has the longest arrow, N.
+            max_torque_Nm: Torque that has the longest arrow, N·m.
             has_friction: Whether there is friction to draw.
         """
         self._meshcat = meshcat
-        # Friction of a loop that was drawn here before is no matter of this one.
+        # A loop that was drawn here before may have left its friction.
         meshcat.Delete(f"{_ROOT}/friction")
         self._wanted = set(SHOWN_AT_FIRST)
         self._shown = SHOWN_AT_FIRST
@@ -127,7 +127,7 @@ class HapticPicture:
         meshcat.SetObject(
             f"{_ROOT}/coupling/line", Cylinder(_LINE_RADIUS * self._size_m, 1.0), line
         )
-        # Not to be seen, where handle and tool are never apart.
+        # Too short to be seen until handle and tool first move apart.
         meshcat.SetProperty(f"{_ROOT}/coupling/line", "scale", [1.0, 1.0, _NO_LENGTH_M])
         self._max_force_N, self._max_torque_Nm = max_force_N, max_torque_Nm
         self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line], LONG_ARROW)
@@ -144,11 +144,11 @@ class HapticPicture:
         self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair, LONG_ARROW)
 
     def show(self, view: str, visible: bool) -> None:
-        """Shows or hides a view; `draw_views` does it.
+        """Requests that a view is shown or hidden, which `draw_views` then does.
 
         Args:
             view: One of `PICTURE_VIEWS`.
-            visible: Whether it is to be seen.
+            visible: Whether the view is to be seen.
 
         Raises:
             ValueError: There is no such view.
@@ -157,17 +157,18 @@ class HapticPicture:
         (self._wanted.add if visible else self._wanted.discard)(view)
 
     def draw_views(self) -> Iterator[None]:
-        """Shows and hides the views that are not yet as they were asked for."""
+        """Shows and hides the views for which `show` was called."""
         if self._wanted == self._shown:
             return
         if not self._pieces_are_sent and self._wanted & {"pieces", "virtual"}:
             for path, pieces in self._pieces.items():
-                # Hidden until all is there, and if it is no longer wanted then.
+                # Hidden until all facets are sent, and then if the view is no longer
+                # wanted.
                 self._set_visible(f"{path}/pieces", False)
                 self._set_visible(f"{path}/virtual", False)
                 yield from pieces.send()
             self._pieces_are_sent = True
-        # Only now: more may have been asked for while pieces were sent.
+        # Read only now: `show` may have been called while pieces were sent.
         wanted = frozenset(self._wanted)
         changed = wanted ^ self._shown
         for view in sorted(changed & _FOLDERS.keys()):
@@ -181,7 +182,7 @@ class HapticPicture:
         self._shown = wanted
 
     def _show_facets(self, path: str, wanted: frozenset[str]) -> None:
-        """Shows of a mesh its surface or its pieces, and virtual facets or none."""
+        """Shows the surface or the pieces of a mesh, with or without virtual facets."""
         has_pieces, has_virtual = "pieces" in wanted, "virtual" in wanted
         self._set_visible(f"{path}/<object>", not has_pieces)
         self._set_visible(f"{path}/pieces", has_pieces)
@@ -194,7 +195,7 @@ class HapticPicture:
                 )
 
     def _set_visible(self, path: str, visible: bool) -> None:
-        """Shows or hides a folder, in a recording for all of its time."""
+        """Shows or hides a folder; in a recording, for its whole duration."""
         self._meshcat.SetProperty(f"{_ROOT}/{path}", "visible", visible)
 
     def place_object(self, name: str, X_WO: RigidTransform, time_s: float) -> None:
@@ -225,11 +226,11 @@ class HapticPicture:
     def draw_display_wrench(
         self, p_WH: np.ndarray, F_H_W: np.ndarray, time_s: float
     ) -> Iterator[None]:
-        """Draws what the hand feels at the handle.
+        """Draws the wrench that the hand feels at the handle.
 
         Args:
-            p_WH: (3,) the handle, m: the force pushes at it, the torque begins there.
-            F_H_W: (6,) the wrench [τ; f], N·m and N.
+            p_WH: (3,) position of the handle, m: tip of the force, tail of the torque.
+            F_H_W: (6,) wrench [τ; f], N·m and N.
             time_s: Time in the recording, s.
         """
         tau_W, f_W = F_H_W[None, :3], F_H_W[None, 3:]
@@ -249,8 +250,8 @@ class HapticPicture:
     def draw_contacts(self, contacts: ContactSet, time_s: float) -> Iterator[None]:
         """Draws a small arrow for each contact, the deepest ones if there are too many.
 
-        It points along the normal and ends at the contact's point: there it comes out
-        of the object, which is seen through, and not out of the tool, which is not.
+        The arrow points along the normal and ends at the contact's point, so that it is
+        in the object, which is translucent, and not in the tool, which is opaque.
         """
         distance = contacts.distance
         order = np.argsort(distance)[:_MAX_CONTACTS]
@@ -285,7 +286,7 @@ class HapticPicture:
     def draw_friction(
         self, clusters: ClusterSet, friction: FrictionStep, time_s: float
     ) -> Iterator[None]:
-        """Draws the friction of each cluster; dark where it sticks, light if not."""
+        """Draws the friction of each cluster; dark if it sticks, light if it slides."""
         keys = list(range(len(clusters)))
         yield from self._draw_forces(
             self._friction,
@@ -297,7 +298,7 @@ class HapticPicture:
         )
 
     def write_visibility(self, time_s: float) -> None:
-        """Sends again what is visible, for the first frame of a recording."""
+        """Sends the visibility again, for the first frame of a recording."""
         pools = (self._force, self._torque, self._contacts)
         for pool in (*pools, self._clusters, self._friction):
             pool.write_visibility(time_s)
@@ -324,7 +325,7 @@ class HapticPicture:
         )
 
     def _scale_arrows(self, v_W: np.ndarray, largest: float) -> np.ndarray:
-        """Returns arrows (n, 3), m, for vectors (n, 3); 0 for what has no direction."""
+        """Returns arrows (n, 3), m, for vectors (n, 3); 0 without a direction."""
         size = np.linalg.norm(v_W, axis=1, keepdims=True)
         # A device without motors for torques shows none.
         share = np.divide(size, largest, out=np.zeros_like(size), where=largest > 0.0)

@@ -30,23 +30,23 @@ _SLICE_S = 60e-6
 _SLICE_TICKS = 2
 # Drawing takes at most this share of clock time; the rest is the loop's.
 _LARGEST_SHARE = 0.05
-# A run faster than real time shows no more frames per second of clock time.
+# Least clock time between two frames of a run that is faster than real time.
 _SHORTEST_FRAME_S = 1 / 50
 
 
 class HapticVisualizer(DifferentiableSystem):
     """Tool, objects, handle, contacts and forces in Meshcat, live or recorded.
 
-    * The tool, and as a ghost where the handle wants it: X_WH X_HT.
+    * The tool, and its ghost where the handle wants the tool: X_WH X_HT.
     * The coupling: a line from the handle to the place in the tool that it holds.
-    * On the hand: an arrow of the force, its tip at the handle, and one with two heads
-      of the torque, which begins there.
+    * The force on the hand: an arrow with its tip at the handle. The torque on the
+      hand: an arrow with two heads that begins there.
     * Each contact: a small arrow along the normal, from the object into the tool,
       its tip at the contact's point; green near, red penetrating.
-    * Each cluster: a larger arrow, as long as its force is large. Of the device's
-      limits arrows are a third of the tool's size long, and no arrow is longer.
-    * Its friction, if there is any: violet, dark where it sticks, light where it
-      slides.
+    * Each cluster: a larger arrow, as long as its force is large. An arrow at the
+      device's limit is a third of the tool's size long, and no arrow is longer.
+    * The friction of each cluster, if there is any: violet, dark where it sticks, light
+      where it slides.
 
     .. pydrake_system::
 
@@ -69,12 +69,12 @@ class HapticVisualizer(DifferentiableSystem):
     `LoadShedding`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
-    is connected. So that drawing delays no tick, a frame is drawn in slices
-    spread over the ticks that follow, each over with the message at which it has taken
-    60 µs; and drawing takes at most one twentieth of clock
-    time: after a frame that was slow to draw, the next ones are left out. Where the
-    loop sheds load, drawing stops at once. A recording is complete, whatever time that
-    takes. Of scalar type AutoDiffXd it draws nothing.
+    is connected. So that drawing delays no tick, a frame is drawn in slices spread over
+    the ticks that follow; a slice ends with the message at which it has taken 60 µs.
+    Drawing takes at most one twentieth of clock time: after a frame that was slow to
+    draw, the next ones are left out. Where the loop sheds load, drawing stops at once.
+    A recording is complete, however long that takes. With scalar type AutoDiffXd it
+    draws nothing.
     """
 
     def __init__(
@@ -93,9 +93,9 @@ class HapticVisualizer(DifferentiableSystem):
         """Constructs the system and sends the geometry.
 
         Args:
-            meshcat: Where to draw, below "/haptics".
+            meshcat: Meshcat to draw in, below "/haptics".
             tool: The tool, in its frame T.
-            objects: Those of the `ContactQuery`.
+            objects: Objects of the `ContactQuery`.
             X_HT: Pose of the tool in the handle at rest.
             tick_s: Period of the loop, s.
             max_force_N: The device's largest force, N.
@@ -123,7 +123,7 @@ class HapticVisualizer(DifferentiableSystem):
         self._first_frame = False
         self._recorded_sizes: list[tuple[float, float, float]] = []
         self._not_before_s = 0.0
-        # The frame that is being drawn, and what it has taken so far.
+        # The frame that is being drawn, and the time that it has taken so far.
         self._frame: Iterator[None] | None = None
         self._frame_start_s = 0.0
         self._taken_s = 0.0
@@ -158,11 +158,12 @@ class HapticVisualizer(DifferentiableSystem):
     def Show(self, view: str, visible: bool) -> None:
         """Shows or hides a view from the next frame on.
 
-        The next frame sends what has not been sent yet, in its slices like all of it.
+        The next frame sends geometry that has not been sent yet, in slices like the
+        rest.
 
         Args:
             view: One of `drake_haptics.systems.output.haptic_picture.PICTURE_VIEWS`.
-            visible: Whether it is to be seen.
+            visible: Whether the view is to be seen.
 
         Raises:
             ValueError: There is no such view.
@@ -171,9 +172,9 @@ class HapticVisualizer(DifferentiableSystem):
 
     @property
     def recorded_sizes(self) -> np.ndarray:
-        """Times, forces and torques while it recorded: (n, 3), s, N, N·m.
+        """Times, forces and torques of a recording: (n, 3), s, N, N·m.
 
-        Of two ticks one is there; frames, of which there are fewer, lose peaks.
+        There is one row for two ticks; the frames are fewer and would miss peaks.
         """
         return np.array(self._recorded_sizes).reshape(-1, 3)
 
@@ -201,7 +202,7 @@ class HapticVisualizer(DifferentiableSystem):
             self._go_on(math.inf)
 
     def _publish_slice(self, context: Context) -> None:
-        """Goes on with a frame, or begins one where that is due."""
+        """Continues a frame, or begins one that is due."""
         if self._recording:
             tau_x, tau_y, tau_z, *f_W = self._F_Ho_W_commanded.Eval(context).tolist()
             sizes = math.hypot(*f_W), math.hypot(tau_x, tau_y, tau_z)
@@ -222,7 +223,7 @@ class HapticVisualizer(DifferentiableSystem):
         )
 
     def _is_due(self, time_s: float) -> bool:
-        """Tells whether a frame belongs to this slice."""
+        """Tells whether a frame begins with this slice."""
         return round(time_s / self._slice_period_s) % self._slices == 0
 
     def _record(self, context: Context) -> None:
@@ -245,7 +246,7 @@ class HapticVisualizer(DifferentiableSystem):
         return True
 
     def _go_on(self, slice_s: float) -> None:
-        """Draws on for a slice, which the last step may overrun."""
+        """Continues a frame for a slice, which the last step may overrun."""
         start_s = now_s = time.perf_counter()
         assert self._frame is not None
         for _ in self._frame:
@@ -259,7 +260,7 @@ class HapticVisualizer(DifferentiableSystem):
         self._not_before_s = self._frame_start_s + pause_s
 
     def _draw(self, context: Context) -> Iterator[None]:
-        """Draws a frame as it is iterated over; all it shows is read at once."""
+        """Returns an iterator that draws a frame; all its inputs are read at once."""
         return self._steps(
             context.get_time(),
             vector_to_pose(self._X_WH.Eval(context)),
@@ -286,7 +287,7 @@ class HapticVisualizer(DifferentiableSystem):
         wrench: PenaltyWrench,
         friction: FrictionStep | None,
     ) -> Iterator[None]:
-        """Sends what is drawn, a little at each step."""
+        """Sends a frame, a little at each step of the iteration."""
         picture = self._picture
         yield from picture.draw_views()
         yield from picture.place_tool(X_WH, X_WT, time_s)

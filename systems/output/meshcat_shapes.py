@@ -18,19 +18,19 @@ Profile = tuple[tuple[float, float], ...]
 """(radius, height) of an arrow of length 1 along z, from its tail to its tip."""
 
 SHORT_ARROW: Profile = ((0.0, 0.0), (0.075, 0.0), (0.075, 0.6), (0.2, 0.6), (0.0, 1.0))
-"""An arrow that says where and which way."""
+"""An arrow that shows a place and a direction."""
 
 LONG_ARROW: Profile = ((0.0, 0.0), (0.05, 0.0), (0.05, 0.7), (0.14, 0.7), (0.0, 1.0))
-"""An arrow whose length says how much: no wider than it needs to be."""
+"""A slim arrow whose length shows a magnitude."""
 
 DOUBLE_ARROW: Profile = (
     *((0.0, 0.0), (0.04, 0.0), (0.04, 0.48), (0.11, 0.48)),
     *((0.03, 0.74), (0.11, 0.74), (0.0, 1.0)),
 )
-"""An arrow with two heads, as torques are drawn."""
+"""An arrow with two heads, for torques."""
 
-# So many facets are sent in one go: what a tick does not notice, and a page that
-# has some hundred thousand of them still takes.
+# Facets per message: so few that a tick is not late, so many that a page can take some
+# hundred thousand of them.
 _SHEET = 128
 
 
@@ -61,9 +61,9 @@ class ArrowPool:
         Args:
             meshcat: Meshcat to draw in.
             path: Folder of the arrows in the scene tree.
-            capacity: How many arrows can be seen at once.
-            colors: What an arrow can be colored.
-            profile: Of an arrow.
+            capacity: Number of arrows that can be seen at once.
+            colors: Colors that an arrow can have.
+            profile: Outline of an arrow of length 1.
         """
         self._meshcat = meshcat
         self._num_colors = len(colors)
@@ -89,12 +89,12 @@ class ArrowPool:
     ) -> Iterator[None]:
         """Shows these arrows and no others; the first ones if there are too many.
 
-        Works as it is iterated over, a message to the page at a time.
+        Each step of the iteration sends one message to the page.
 
         Args:
-            keys: (n,) what each arrow stands for, each once.
+            keys: (n,) keys of the things that the arrows stand for, all different.
             p_WTip: (n, 3) tips, m.
-            vectors_W: (n, 3) from tail to tip, m, none of them zero.
+            vectors_W: (n, 3) vectors from tail to tip, m, none of them zero.
             colors: (n,) indices into the pool's colors.
             time_s: Time in the recording, s.
         """
@@ -122,7 +122,7 @@ class ArrowPool:
                 yield
 
     def write_visibility(self, time_s: float) -> None:
-        """Sends again what is visible, for the first frame of a recording."""
+        """Sends the visibility again, for the first frame of a recording."""
         for slot, shown in zip(self._slots, self._shown, strict=True):
             for color in range(self._num_colors):
                 self._meshcat.SetProperty(
@@ -136,7 +136,7 @@ class ArrowPool:
         self._slot_of_key = {k: kept[k] if k in kept else next(free) for k in keys}
 
     def _show(self, slot: int, color: int | None, time_s: float) -> None:
-        """Makes another color of a slot visible, or none."""
+        """Shows another color of a slot, or hides the slot."""
         for changed, visible in ((self._shown[slot], False), (color, True)):
             if changed is not None:
                 path = f"{self._slots[slot]}/arrow/{changed}"
@@ -181,7 +181,7 @@ class DrawnPieces:
         Args:
             meshcat: Meshcat to draw in.
             path: Folder in the scene tree.
-            pieces: What to draw, in the frame of the folder.
+            pieces: Pieces to draw, in the frame of the folder.
             alpha: Opacity of the facets on the mesh.
         """
         self._meshcat = meshcat
@@ -190,8 +190,8 @@ class DrawnPieces:
         self._alpha = alpha
 
     def send(self) -> Iterator[None]:
-        """Sends all facets as it is iterated over."""
-        # Corners and colors that wait for a sheet to be full, by kind.
+        """Sends all facets, some at each step of the iteration."""
+        # Corners and colors that wait until a sheet is full, by kind.
         waiting: dict[bool, list[tuple[np.ndarray, np.ndarray]]] = {True: [], False: []}
         sent = {True: 0, False: 0}
         for index, original, corners in each_facet(self._pieces):

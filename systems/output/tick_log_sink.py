@@ -25,7 +25,7 @@ from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 
 class TickLogSink(Diagram):
-    """Hands what the updates of a tick see to a `TickRecorder`.
+    """Hands the signals that the updates of a tick see to a `TickRecorder`.
 
     .. pydrake_system::
 
@@ -43,14 +43,14 @@ class TickLogSink(Diagram):
         - reading (if there is one)
 
     The inputs are the outputs of these names of `HapticDevice`, `HapticTool`,
-    `ContactQuery` and `ContactClustering`, and the wrench that the device is asked to
-    show. `reading` is the `DeviceReading` of a device that is not simulated.
+    `ContactQuery` and `ContactClustering`, and the wrench that is commanded to the
+    device. `reading` is the `DeviceReading` of a device that is not simulated.
 
     It notes them in a periodic discrete update, from 0 s on, though it has no state:
-    there, and nowhere else, all of it is what the other updates of the tick sample.
-    A publish event or a monitor comes before a device is read, or after the tool has
-    moved on. Two Contexts of this system write to the one log there is, and a diagram
-    with it does not convert to AutoDiffXd.
+    only there do they have the values that the other updates of the tick sample. A
+    publish event or a monitor comes before a device is read, or after the tool has
+    moved on. Two Contexts of this system write to the same log, and a diagram with it
+    does not convert to AutoDiffXd.
     """
 
     def __init__(

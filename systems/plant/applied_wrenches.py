@@ -23,20 +23,20 @@ from drake_haptics.systems.framework.differentiable_system import (
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
 def AppliedWrenches_(T: type) -> type:
     """Defines `AppliedWrenches` for one scalar type."""
-    # Looked up once: that takes longer than all the rest.
+    # Looked up once: the lookup takes longer than all the rest.
     AppliedForce, SpatialForce = ExternallyAppliedSpatialForce_[T], SpatialForce_[T]
     # Not left to the default, which is not a number for AutoDiffXd.
     p_BoBo_B = np.array([T(0.0)] * 3)
 
     def make_force(body: BodyIndex) -> Any:
-        """Returns no force on a body at its origin as what the plant takes."""
+        """Returns a force on a body at its origin, without a wrench yet."""
         force = AppliedForce()
         force.body_index = body
         force.p_BoBq_B = p_BoBo_B
         return force
 
     def apply(force: Any, F_Bo_W: Any) -> Any:
-        """Returns a wrench (6) in place of the one of a force."""
+        """Returns a copy of a force with a wrench (6)."""
         applied = copy(force)
         applied.F_Bq_W = SpatialForce(F_Bo_W)
         return applied
@@ -76,11 +76,11 @@ def AppliedWrenches_(T: type) -> type:
             """Constructs the system.
 
             Args:
-                tool: The body that is the tool.
+                tool: Body that is the tool.
                 tool_wrenches: A name for each wrench on the tool.
-                objects: The bodies that are the objects that move.
-                object_wrenches: A name for each set of wrenches on them.
-                converter: For Drake.
+                objects: Bodies of the objects that move.
+                object_wrenches: A name for each set of wrenches on the objects.
+                converter: Scalar converter, which Drake passes.
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self._bodies = [tool, *objects]

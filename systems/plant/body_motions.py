@@ -25,7 +25,7 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 
 class BodyMotions(Diagram):
-    """Poses and velocities of the bodies that take part, out of all of a plant's.
+    """Poses and velocities of tool and objects, out of those of all bodies of a plant.
 
     .. pydrake_system::
 
@@ -59,7 +59,7 @@ class BodyMotions(Diagram):
         """Constructs the system.
 
         Args:
-            tool: The body that is the tool.
+            tool: Body that is the tool.
             objects: Bodies of the objects that move, by the names of the objects.
             largest_step_s: Longest step that an integrator may take, s; None for a
                 discrete plant, which has steps of its own.

@@ -30,13 +30,13 @@ class BodyOfProxy(LeafSystem):
       spatial velocity [ω; v] at its origin in the world, rad/s and m/s.
     * `X_WP` (7) is the proxy's pose.
     * `F_Po_W` (6) is the wrench [τ; f] of contact on the proxy at its origin in the
-      world, N·m and N; `handle` (78) a wrench model that begins with another one. It
-      counts as zero if it is not connected.
+      world, N·m and N; `handle` (78) is a wrench model that begins with another wrench
+      on the proxy; it counts as zero if it is not connected.
     * `X_WT_next` (7) is the body's pose after a step without forces. A proxy that is
       drawn there does not lag behind a body that coasts.
-    * `F_To_W` (6) is the sum of both wrenches at the body's origin: what acts on a
-      proxy without mass acts on its body, at the same place, so that neither momentum
-      nor angular momentum is lost, and a body that touches nothing feels nothing.
+    * `F_To_W` (6) is the sum of both wrenches at the body's origin: wrenches on a proxy
+      without mass act on its body, at the same place, so that neither momentum nor
+      angular momentum is lost, and a body that touches nothing feels nothing.
 
     It has no state.
     """
@@ -45,7 +45,7 @@ class BodyOfProxy(LeafSystem):
         """Constructs the system.
 
         Args:
-            period_s: The step, s.
+            period_s: Duration of a step, s.
         """
         super().__init__()
         self._period_s = period_s

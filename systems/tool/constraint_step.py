@@ -36,7 +36,7 @@ from drake_haptics.systems.framework.differentiable_system import (
 from drake_haptics.systems.tool.haptic_tool import STATE_NAMES
 from drake_haptics.systems.tool.virtual_coupling import coupling_wrench, gains_to_vector
 
-# What is known before the first step. (A Value of Drake 1.58 cannot hold None.)
+# Value of the caches before the first step. (A Value of Drake 1.58 cannot hold None.)
 _NOTHING = "nothing"
 
 
@@ -45,10 +45,10 @@ class ConstraintWrench:
     """The wrenches of the contacts of a step. Immutable.
 
     Attributes:
-        contacts: (n,) those that push.
+        contacts: (n,) contacts that push.
         lambda_N: (n,) force along the normal of each, N; not negative.
         F_To_W: (6,) wrench on the tool at its origin in the world, [N·m; N].
-        F_objects_W: (m, 6) wrench on each object at its origin, the same.
+        F_objects_W: (m, 6) wrench on each object at its origin in the world, [N·m; N].
     """
 
     contacts: ContactSet
@@ -58,11 +58,11 @@ class ConstraintWrench:
 
     @property
     def f_cluster_W(self) -> np.ndarray:
-        """(n, 3) force of each contact on the tool, N: each is by itself."""
+        """(n, 3) force of each contact on the tool, N: each is a cluster by itself."""
         return self.lambda_N[:, None] * self.contacts.nhat_BA_W
 
     def __deepcopy__(self, memo: object) -> ConstraintWrench:
-        """Returns itself, so that it crosses into copies of a Context."""
+        """Returns itself, so that copies of a Context share it."""
         return self
 
 
@@ -87,16 +87,18 @@ class _ConstraintStep(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            make_stepper: Makes the step of the core with gains of the coupling.
-            objects: What the tool can meet.
-            gains: In a Context that says no other.
+            make_stepper: Function that makes the step of the core with gains of the
+                coupling.
+            objects: Objects that the tool can meet.
+            gains: Default gains of the coupling.
             X_HT: Pose of the tool in the handle at which the spring rests.
-            X_WT: Default pose; the tool starts at rest.
+            X_WT: Default pose of the tool, which starts at rest.
             tick_s: The tick, s.
             step_s: Duration of a step, s.
             wrench_names: A name for each input of another wrench.
-            plant: As of `ConstraintToolStep`.
-            start_servo: As of `ConstraintToolStep`.
+            plant: Plant with a body that is the handle; see `ConstraintToolStep`.
+            start_servo: Function that starts a thread to step the tool; see
+                `ConstraintToolStep`.
         """
         super().__init__()
         self._make_stepper = make_stepper
@@ -129,7 +131,7 @@ class _ConstraintStep(DifferentiableSystem):
                 "takes friction into its step: take effects.friction out, or take"
                 " contact.law: penalty"
             )
-        # The memory of a Context.
+        # What a Context remembers of the last search.
         self._stepper = self.DeclareCacheEntry(
             description="stepper",
             value_producer=ValueProducer(
@@ -138,7 +140,7 @@ class _ConstraintStep(DifferentiableSystem):
             prerequisites_of_calc={self.pa_ticket()},
         )
         from_all = {self.all_input_ports_ticket(), self.xd_ticket(), self.pa_ticket()}
-        # Outputs and update of a tick share one answer of the core.
+        # Outputs and update of a tick share one result of the core.
         self._result = self.DeclareCacheEntry(
             description="result",
             value_producer=ValueProducer(
@@ -196,7 +198,8 @@ class _ConstraintStep(DifferentiableSystem):
         if plant is not None:
             self.DeclareInitializationDiscreteUpdateEvent(self._start)
         if plant is not None and plant.has_sampled_output_ports():
-            # As the plant's: a discrete update would come after it.
+            # Unrestricted as the plant's own update: a discrete one would come after
+            # it.
             self.DeclarePeriodicUnrestrictedUpdateEvent(
                 self._step_s,
                 0.0,
@@ -208,7 +211,7 @@ class _ConstraintStep(DifferentiableSystem):
             self.DeclarePeriodicDiscreteUpdateEvent(self._step_s, 0.0, self._update)
 
     def _prepare_stepper(self, context: Context, value: AbstractValue) -> None:
-        """Makes the stepper of a Context, or tells it of other gains."""
+        """Makes the stepper of a Context, or sets its gains."""
         gains = context.get_abstract_parameter(self._gains).get_value()
         stepper = value.get_value()
         if isinstance(stepper, ConstraintStepper):
@@ -233,7 +236,7 @@ class _ConstraintStep(DifferentiableSystem):
         )
 
     def _sum_wrenches(self, context: Context) -> np.ndarray:
-        """Returns (6,) what else pushes the tool, [τ; f] at To in the world."""
+        """Returns the sum (6,) of the input wrenches on the tool, [τ; f] at To in W."""
         F_To_W = np.zeros(6)
         for port in self._wrenches:
             if port.HasValue(context):
@@ -241,7 +244,7 @@ class _ConstraintStep(DifferentiableSystem):
         return F_To_W
 
     def _read_anchors(self, context: Context) -> np.ndarray:
-        """Returns the anchors of friction at the tick's beginning."""
+        """Returns the anchors of friction at the beginning of the tick."""
         if self._num_anchors == 0:
             return np.zeros(0)
         anchors: np.ndarray = context.get_discrete_state(1).value()
@@ -306,7 +309,7 @@ class _ConstraintStep(DifferentiableSystem):
                 np.zeros((6, at.num_derivatives)),
             ),
         )
-        # A new one, so that the answer is a function of the Context alone.
+        # A new stepper, so that the result is a function of the Context alone.
         stepper = self._make_stepper(at.parameters[self._gains])
         return stepper.differentiate(
             at.state, at["X_WH"], at["V_WH"], F_To_W, X_WO, V_WO

@@ -25,14 +25,15 @@ from drake_haptics.systems.tool.constraint_step import _ConstraintStep
 class ConstraintToolStep(Diagram):
     """A free rigid body that is drawn to the handle and kept apart from objects.
 
-    It stands for `ContactQuery`, `ContactClustering`, `PenaltyForce`,
-    `VirtualCoupling` and `HapticTool` together, by the constraint law. Of each pair of
-    convex pieces that may come near in the tick there is a row: what the pair's
-    distance will be, to first order in the tool's motion, must not be less than the
-    skin. The motion is the one that minimizes the energy of inertia, coupling and
-    applied wrenches under all rows (core/constraint/constraint_step.h). A fast tick is
-    divided until no motion is longer than what the rows see, so that the tool passes
-    through nothing, however thin or soft. What begins in overlap is led out slowly.
+    Under the constraint law it replaces `ContactQuery`, `ContactClustering`,
+    `PenaltyForce`, `VirtualCoupling` and `HapticTool` together. Each pair of convex
+    pieces that may come near in the tick gives a row: the distance of the pair after
+    the step, to first order in the tool's motion, must not be less than the skin. The
+    motion is the one that minimizes the energy of inertia, coupling and applied
+    wrenches under all rows (core/constraint/constraint_step.h). A fast tick is divided
+    until no motion is longer than the distance that the rows see, so that the tool
+    passes through nothing, however thin or soft. A tool that begins in overlap is led
+    out slowly.
 
     .. pydrake_system::
 
@@ -59,37 +60,39 @@ class ConstraintToolStep(Diagram):
     Poses are [qw qx qy qz x y z] in the world, m; `V_WH`, `V_WT` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin, rad/s and m/s. Each other input is
     a wrench model (78) as `PenaltyForce` documents it, of which the wrench alone
-    counts, as for `ToolGravity`'s; one that is not connected counts as zero.
+    counts, like that of `ToolGravity`; an input that is not connected counts as zero.
 
-    * `X_WT` (7) and `V_WT` (6) are the tool's, as of `HapticTool`.
+    * `X_WT` (7) and `V_WT` (6) are the tool's pose and velocity, as in `HapticTool`.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
-      world, N·m and N, as of `VirtualCoupling`.
+      world, N·m and N, as in `VirtualCoupling`.
     * `contacts` is a `drake_haptics.ContactSet` of the rows that push in the tick that
-      begins: a pair of pieces has several where it is flush.
+      begins: a pair of flush pieces has several.
     * `contact_wrench` is their `ConstraintWrench`.
-    * `F_To_W` (6) is their wrench [τ; f] on the tool at its origin, mean of the tick.
-    * `F_O_W` (6 for each object that moves) are the wrenches on those objects, those of
-      friction among them.
-    * `wrench_model` (78) is [F; K; B] of the contacts: what they push with as the tool
-      moves by δ in the tick is F - K δ; B is zero. K is that of the rows that push.
+    * `F_To_W` (6) is their wrench [τ; f] on the tool at its origin, averaged over the
+      tick.
+    * `F_O_W` (6 for each object that moves) are the wrenches on those objects,
+      including friction.
+    * `wrench_model` (78) is [F; K; B] of the contacts: as the tool moves by δ in the
+      tick they push with F - K δ; B is zero. K is that of the rows that push.
     * `coupling` (78) is that of `VirtualCoupling`.
     * `friction_force` is the `drake_haptics._core.FrictionStep` of `contacts`, and
-      `friction_model` (78) its [F; K; B] on the tool, as of `StickSlipFriction`.
+      `friction_model` (78) its [F; K; B] on the tool, as in `StickSlipFriction`.
 
-    Friction takes part in the same step: where the tool sticks it hangs on an anchor,
-    and slides where the normal forces of this very tick do not hold it
+    Friction takes part in the same step: where the tool sticks it is tied to an anchor,
+    and it slides where the normal forces of the same tick do not hold it
     (core/constraint/row_friction.h).
 
-    The state is a discrete group (13), [X_WT; V_WT], and with friction a second one
-    (8 for each object), the anchors, both updated every period from 0 s on, or read
-    from a servo that steps the tool. At the end of each tick the system tells that
-    servo that the loop goes on. What the search knows from the last tick is the memory
-    of a Context, and never changes an answer by more than round-off.
+    The state is a discrete group (13), [X_WT; V_WT], and with friction a second one (8
+    for each object), the anchors, both updated every period from 0 s on, or read from a
+    servo that steps the tool. At the end of each tick the system tells that servo that
+    the loop goes on. A Context remembers the search of the last tick, which never
+    changes a result by more than round-off.
 
-    The gains of the coupling are an abstract parameter of the Context; see
-    `set_gains`. Outputs have no derivatives by them, and none at all with friction.
-    Under AutoDiffXd the features that face each other stay, a row that just begins to
-    push does push, and `contacts`, `contact_wrench` and `wrench_model` have no value.
+    The gains of the coupling are an abstract parameter of the Context; see `set_gains`.
+    Outputs have no derivatives with respect to them, and none at all with friction.
+    Under AutoDiffXd the features that face each other stay the same, a row that just
+    begins to push does push, and `contacts`, `contact_wrench` and `wrench_model` have
+    no value.
     """
 
     def __init__(
@@ -114,22 +117,26 @@ class ConstraintToolStep(Diagram):
 
         Args:
             tool: Convex pieces of the tool, in its frame.
-            objects: What it can meet.
-            skin_m: δ, the distance that it keeps from each object, m.
-            dynamics: Mass and inertia.
-            gains: Of the spring and the damper, in a Context that says no other.
+            objects: Objects that the tool can meet.
+            skin_m: Distance δ that the tool keeps from each object, m.
+            dynamics: Mass and inertia of the tool.
+            gains: Default gains of the spring and the damper.
             X_HT: Pose of the tool in the handle at which the spring rests.
-            X_WT: Default pose; the tool starts at rest.
+            X_WT: Default pose of the tool, which starts at rest.
             period_s: The tick, s.
             wrench_names: A name for each input of another wrench.
-            plant: One with a body that is the handle: `Simulator.Initialize` puts the
-                tool there, and its update sees the plant as the plant's own does.
-            coefficient: μ of friction with each object. Defaults to no friction.
-            break_away_m: How far the tool gives way before it slides, m.
-            servo_period_s: How often the tool is stepped between ticks, s. Defaults to
-                at every tick. Nothing moves but it and the handle then.
-            start_servo: Starts a thread that steps the tool instead, by a stepper of
-                that period. The state is that thread's at each tick then.
+            plant: Plant with a body that is the handle: `Simulator.Initialize` puts the
+                tool there, and the system's update sees the plant as the plant's own
+                update does. Defaults to none.
+            coefficient: Friction coefficient μ for each object. Defaults to no
+                friction.
+            break_away_m: Distance that the tool gives way before it slides, m.
+            servo_period_s: Period at which the tool is stepped, s. If it is shorter
+                than the tick, only tool and handle move between ticks. Defaults to the
+                tick.
+            start_servo: Function that starts a thread to step the tool instead, with a
+                stepper of that period. The state at each tick is then that of the
+                thread. Defaults to none.
 
         Raises:
             ValueError: The period, a skin or the break-away is not positive, a
@@ -144,7 +151,7 @@ class ConstraintToolStep(Diagram):
         if len({item.name for item in objects}) < len(objects):
             raise ValueError("two objects have the same name")
         if start_servo is not None and any(item.X_WO is None for item in objects):
-            raise ValueError("a servo steps a tool among objects that rest")
+            raise ValueError("start_servo: the objects must rest")
         self._dynamics = dynamics
         self._period_s = period_s
         self._X_HT = X_HT
@@ -215,7 +222,7 @@ class ConstraintToolStep(Diagram):
         """Returns the gains of the spring and the damper.
 
         Args:
-            context: Of this system.
+            context: Context of this system.
         """
         own = self.GetSubsystemContext(self._step, context)
         gains: CouplingGains = own.get_abstract_parameter(0).get_value()
@@ -225,11 +232,11 @@ class ConstraintToolStep(Diagram):
         """Changes the gains, from now on.
 
         Args:
-            context: Of this system.
-            gains: Of the spring and the damper.
+            context: Context of this system.
+            gains: Gains of the spring and the damper.
 
         Raises:
-            TypeError: They are no `CouplingGains`.
+            TypeError: The gains are not `CouplingGains`.
         """
         if not isinstance(gains, CouplingGains):
             raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")

@@ -23,9 +23,10 @@ from drake_haptics.systems.framework.differentiable_system import (
 class HandleModel(LeafSystem):
     """Stiffness and damping that a handle feels, for a servo between two ticks.
 
-    The tool is light and follows at rest: coupling and contact are springs in series.
-    Free in space the handle feels no stiffness, at a wall that of both along the
-    normal alone, however stiff the coupling is in all others.
+    The tool is taken to be light and at rest: coupling and contact are springs in
+    series. Free in space the handle feels no stiffness; at a wall it feels that of both
+    springs, along the normal alone, however stiff the coupling is in all other
+    directions.
 
     .. pydrake_system::
 
@@ -44,8 +45,9 @@ class HandleModel(LeafSystem):
       tool in the world, m.
     * `coupling` and each other wrench (78) are wrench models [F; K; B] on the tool,
       as `PenaltyForce` documents them.
-    * `contact_chain` and `motions_and_gains` are those of `HapticTool`: coupling and
-      contacts, the first of the other wrenches, come of them then.
+    * `contact_chain` and `motions_and_gains` are those of `HapticTool`: the wrenches of
+      the coupling and of the contacts, which are the first of the others, then come
+      from them.
     * `handle_slopes` (72) is [K; B], each (6, 6) by rows, of the wrench [τ; f] on the
       handle at its origin in the world: it changes by -K δ - B ΔV where the handle
       moves by δ = [rotation vector; translation] and its velocity by ΔV.
@@ -63,7 +65,8 @@ class HandleModel(LeafSystem):
 
         Args:
             wrench_names: A name for each wrench on the tool besides the coupling's.
-            chained_at: As of `HapticTool`.
+            chained_at: X_HT of the coupling, if coupling and contacts are computed by
+                the chain; see `HapticTool`.
         """
         super().__init__()
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)

@@ -46,8 +46,8 @@ class HapticTool(Diagram):
 
     * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (32) that of
       `VirtualCoupling`. With them the core computes the first two wrenches, those of
-      the coupling and of the contacts, within the step, to the same bits as the inputs
-      have; these then are there to be seen, and for derivatives.
+      the coupling and of the contacts, within the step, bit for bit as the inputs have
+      them; those inputs then serve for inspection and for derivatives.
 
     * `X_WT` (7) is the pose [qw qx qy qz x y z] in the world, m.
     * `V_WT` (6) is the spatial velocity [ω; v] of the tool's origin in the
@@ -69,10 +69,10 @@ class HapticTool(Diagram):
         """Constructs the system.
 
         Args:
-            dynamics: Mass and inertia.
+            dynamics: Mass and inertia of the tool.
             period_s: The tick, s.
             wrench_names: A name for each input port.
-            X_WT: Default pose; the tool starts at rest.
+            X_WT: Default pose of the tool, which starts at rest.
             chained_at: X_HT of the coupling, if coupling and contacts are computed
                 within the step; they are the first two wrenches then.
 
@@ -127,7 +127,7 @@ class _ImplicitStep(DifferentiableSystem):
         self._wrenches = [
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
-        # Coupling and contacts come of the chain, if there is one.
+        # Coupling and contacts come from the chain, if there is one.
         self._read = self._wrenches if chained_at is None else self._wrenches[2:]
         self._eval_read = [port.Eval for port in self._read]
         state = self.DeclareDiscreteState(
@@ -169,7 +169,7 @@ class _ImplicitStep(DifferentiableSystem):
         try:
             return [eval_wrench(context) for eval_wrench in self._eval_read]
         except RuntimeError:
-            # To ask first would take as long as to read, at every tick.
+            # Asking first would take as long as reading, at every tick.
             return [port.Eval(context) for port in self._read if port.HasValue(context)]
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:

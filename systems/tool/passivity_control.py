@@ -26,16 +26,16 @@ class PassivityControl(Diagram):
 
     The observer keeps the balance of the energy that the virtual world has received
     from the device. The wrench on a device is held between ticks, so its work is
-    exactly force times way and, about an axis that stands still, torque times angle
-    (Ryu, Kim and Hannaford 2004); no velocity is needed. Where the balance is below
-    zero, the world has given out more than it got, and the controller adds the damping
-    that dissipates the excess within a tick at the measured twist, up to a largest
-    one (Hannaford and Ryu 2002; in six axes Preusche et al. 2003). What is left is
-    carried over. The controller never adds power to the handle, and where the
-    balance is not negative `F_Ho_W_commanded` is `F_Ho_W_desired` bit for bit.
+    exactly force times displacement and, about a fixed axis, torque times angle (Ryu,
+    Kim and Hannaford 2004); no velocity is needed. Where the balance is below zero, the
+    world has given out more than it got, and the controller adds the damping that
+    dissipates the excess within a tick at the measured twist, up to a limit (Hannaford
+    and Ryu 2002; in six axes Preusche et al. 2003). The rest of the excess is carried
+    over. The controller never adds power to the handle, and where the balance is not
+    negative `F_Ho_W_commanded` is `F_Ho_W_desired` bit for bit.
 
-    A long contact that dissipates would fill the balance without end, and the
-    controller would come late. Therefore the balance is kept at `reserve_J` at most,
+    A long contact that dissipates would raise the balance without end, and the
+    controller would act too late. Therefore the balance is kept at `reserve_J` at most,
     to be chosen as the largest energy that the world can honestly give back
     (`drake_haptics.bounds.sampled_spring.calc_returnable_energy`).
 
@@ -53,9 +53,9 @@ class PassivityControl(Diagram):
 
     Wrenches are [τ; f] on the handle at its origin in the world, N·m and N.
 
-    * `F_Ho_W_desired` is what the coupling would show.
-    * `F_Ho_W_rendered` is the `HapticDevice`'s: what has been held, after its limits,
-      since the last tick.
+    * `F_Ho_W_desired` is the wrench that the coupling would show.
+    * `F_Ho_W_rendered` is the wrench that the `HapticDevice` has held, within its
+      limits, since the last tick.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m, and `V_WH`
       its spatial velocity [ω; v], rad/s and m/s.
     * `F_Ho_W_commanded` depends directly on all inputs: there is no delay. The device's
@@ -65,8 +65,8 @@ class PassivityControl(Diagram):
     The state is one discrete group (8), [balance; X_WH at the last tick], updated
     every period from 0 s on.
 
-    Derivatives are those of the branch taken: nothing is damped, a share, or with all
-    of the damping; the balance is below the reserve or kept at it.
+    Derivatives are those of the branch taken: no damping, a share of it, or all of it;
+    the balance is below the reserve or kept at it.
     """
 
     def __init__(
@@ -80,15 +80,15 @@ class PassivityControl(Diagram):
         """Constructs the system.
 
         Args:
-            period_s: The tick, s; the device's.
+            period_s: The device's tick, s.
             max_damping_Ns_per_m: Largest damping, N·s/m. A sampled damper b is itself
                 stable on a device of mass m only below 2 m / period_s.
             max_rotational_damping_Nms_per_rad: Largest rotational damping, N·m·s/rad.
             reserve_J: Largest balance that is kept, J.
 
         Raises:
-            ValueError: The period is not positive, another one is negative, or one of
-                them is not finite.
+            ValueError: The period is not positive, another argument is negative, or one
+                of them is not finite.
         """
         super().__init__()
         bounds = PassivityBounds(
@@ -111,13 +111,13 @@ class PassivityControl(Diagram):
         builder.BuildInto(self)
 
     def begin(self, context: Context) -> None:
-        """Begins with a balance of zero where the handle is.
+        """Begins with a balance of zero at the handle's present pose.
 
-        A wrench may be held there already: for a control that is added to a loop that
-        runs.
+        Use it for a controller that is added to a running loop, where a wrench may be
+        held already.
 
         Args:
-            context: Of this system.
+            context: Context of this system.
         """
         self._port.begin(self.GetMutableSubsystemContext(self._port, context))
 
@@ -132,9 +132,9 @@ class _ObservedPort(DifferentiableSystem):
         self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
-        # At the first tick no wrench has been held: any pose does.
+        # At the first tick no wrench has been held: any pose will do.
         self.DeclareDiscreteState(np.array([0.0, *_AT_ORIGIN]))
-        # What is shown, and the state after it.
+        # The wrench that is shown, and the next state.
         self._shown_and_state = self.DeclareVectorOutputPort(
             "shown_and_state",
             14,
@@ -156,14 +156,14 @@ class _ObservedPort(DifferentiableSystem):
         )
 
     def begin(self, context: Context) -> None:
-        """Begins with a balance of zero where the handle is."""
+        """Begins with a balance of zero at the handle's present pose."""
         context.SetDiscreteState(np.array([0.0, *self._X_WH.Eval(context)]))
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         next_state.set_value(self._shown_and_state.Eval(context)[6:])
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
-        """Returns what is shown and the state with their derivatives."""
+        """Returns the wrench and the next state with their derivatives."""
         return passivity_control(
             at.state,
             at["F_Ho_W_rendered"],

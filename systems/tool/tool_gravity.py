@@ -49,12 +49,12 @@ class ToolGravity(DifferentiableSystem):
 
         Args:
             mass_kg: Mass of the tool, kg.
-            p_TTcm: (3,) its center of mass in its frame, m.
+            p_TTcm: (3,) center of mass of the tool in its frame, m.
             gravity_m_per_s2: (3,) acceleration of gravity in the world, m/s².
 
         Raises:
-            ValueError: The mass is not positive, a vector has not three entries, or
-                something is not finite.
+            ValueError: The mass is not positive, a vector does not have three entries,
+                or a number is not finite.
         """
         super().__init__()
         if not (mass_kg > 0.0 and np.isfinite(mass_kg)):

@@ -25,12 +25,12 @@ from drake_haptics.systems.framework.differentiable_system import (
 class VirtualCoupling(Diagram):
     """Six-axis spring and damper between handle and tool.
 
-    It draws the tool to X_WH X_HT; what it does to the handle is the reaction. The
-    device thus feels at most this stiffness, however stiff the contact is
-    (Adams and Hannaford 1999). It has no state and adds no delay.
+    It draws the tool to X_WH X_HT, and the handle gets the reaction. The device thus
+    feels at most this stiffness, however stiff the contact is (Adams and Hannaford
+    1999). It has no state and adds no delay.
 
-    It pulls with no more than the gains' `max_force_N` and `max_torque_Nm`, those of
-    the device in a loop: what stretches it further presses the tool no harder.
+    It pulls with no more than the gains' `max_force_N` and `max_torque_Nm`, in a loop
+    those of the device: to stretch it further presses the tool no harder.
 
     .. pydrake_system::
 
@@ -53,27 +53,27 @@ class VirtualCoupling(Diagram):
       documents it.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
       world, N·m and N.
-    * `motions_and_gains` (32) is what both are functions of: the inputs, in this order,
+    * `motions_and_gains` (32) holds all that both depend on: the inputs, in this order,
       and the gains.
 
     The gains are a numeric parameter (6) of the Context, in the order of
     `drake_haptics._core.CouplingGains`; see `set_gains`. Outputs have no derivatives
-    by them.
+    with respect to them.
     """
 
     def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
         """Constructs the system.
 
         Args:
-            gains: Of the spring and the damper, in a Context that says no other.
+            gains: Default gains of the spring and the damper.
             X_HT: Pose of the tool in the handle at which the spring rests.
         """
         super().__init__()
         self._X_HT = X_HT
         builder = DiagramBuilder()
         spring = builder.AddNamedSystem("spring", _SpringAndDamper(X_HT))
-        # Drake's own system has them among its parameters, and hands them on with
-        # the motions: for Python to read a parameter takes longer than the law.
+        # Drake's own system has them as a parameter, and hands them on with the
+        # motions: to read a parameter in Python takes longer than the law.
         self._gains = builder.AddNamedSystem(
             "gains", ConstantVectorSource(gains_to_vector(gains))
         )
@@ -96,7 +96,7 @@ class VirtualCoupling(Diagram):
         """Returns the gains of the spring and the damper.
 
         Args:
-            context: Of this system.
+            context: Context of this system.
         """
         own = self.GetSubsystemContext(self._gains, context)
         return CouplingGains(*self._gains.get_source_value(own).value())
@@ -105,11 +105,11 @@ class VirtualCoupling(Diagram):
         """Changes the gains, from now on.
 
         Args:
-            context: Of this system.
-            gains: Of the spring and the damper.
+            context: Context of this system.
+            gains: Gains of the spring and the damper.
 
         Raises:
-            TypeError: They are no `CouplingGains`.
+            TypeError: The gains are not `CouplingGains`.
         """
         if not isinstance(gains, CouplingGains):
             raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
@@ -122,12 +122,12 @@ class VirtualCoupling(Diagram):
         return self._X_HT
 
 
-# What the spring and damper are given, with the gains after it.
+# Inputs of the spring and damper; the gains follow them.
 _MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WT": 7, "V_WT": 6}
 
 
 def gains_to_vector(gains: CouplingGains) -> np.ndarray:
-    """Returns gains (6,) in the order in which they are constructed."""
+    """Returns gains (6,) in the order of the constructor of `CouplingGains`."""
     return np.array(
         [
             gains.stiffness_N_per_m,
@@ -172,7 +172,7 @@ class _SpringAndDamper(DifferentiableSystem):
     def __init__(self, X_HT: RigidTransform):
         super().__init__()
         self._q_HT = pose_to_vector(X_HT)
-        # Bound once: to look a method up at each tick takes as long as to add vectors.
+        # Bound once: looking a method up takes as long as adding vectors, at each tick.
         self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 32).Eval
         self.DeclareVectorOutputPort(
             "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}

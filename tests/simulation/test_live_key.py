@@ -83,9 +83,9 @@ def test_all_that_is_offered_makes_a_valid_scene():
 def test_the_help_is_what_the_scene_says_of_its_keys():
     found = {key.key: key.help for key in live_keys(make_scene())}
     assert found["contact.tolerance_m"] == (
-        "Pieces nearer than this push each other apart, m (the paper's t)."
+        "Distance below which pieces push each other apart, m (the paper's t)."
     )
     assert found["coupling.rotational_damping_Nms_per_rad"] == (
-        "Torque per speed of rotation of one against the other, N·m·s/rad."
+        "Torque per relative angular speed of handle and tool, N·m·s/rad."
     )
     assert all(found.values())

@@ -30,7 +30,7 @@ def make_times(median_us: float) -> TickTimes:
 
 
 def make_errors(force_rms_N: float, stiffness: float | None = 3e4) -> Errors:
-    """Errors of which all grow with that of the force."""
+    """Returns errors that all grow with that of the force."""
     return Errors(
         force_rms_N=force_rms_N,
         force_max_N=4.0 * force_rms_N,

@@ -15,13 +15,13 @@ REACH = 3
 
 
 def seeded(value: object) -> AutoDiffVector:
-    """Variables: each entry is one."""
+    """Returns variables: each entry is one."""
     value = np.asarray(value, dtype=float).ravel()
     return AutoDiffVector(value, np.eye(len(value)))
 
 
 def constant(value: object, count: int) -> AutoDiffVector:
-    """What none of `count` variables changes."""
+    """Returns values that none of `count` variables changes."""
     value = np.asarray(value, dtype=float).ravel()
     return AutoDiffVector(value, np.zeros((len(value), count)))
 
@@ -61,17 +61,17 @@ def derivative_errors(
     """Compares derivatives with central differences of sixth order.
 
     Args:
-        function: Of doubles, of the variables.
-        answer: What the AutoDiff version gives, by the same variables.
+        function: Function of doubles, of the variables.
+        answer: Answer of the AutoDiff version, by the same variables.
         x: (D,) the variables' values.
-        step: Of the differences.
+        step: Step of the differences.
         blocks: Rows of the answer that are of one kind.
-        tolerance: What differences must be able to tell.
+        tolerance: Smallest error that differences must be able to tell.
 
     Returns:
-        Of each block the largest error relative to its largest derivative. Blocks
-        are left out where differences of fourth and sixth order disagree by a tenth
-        of the tolerance: there is a kink, or the function bends too much for them.
+        The largest error of each block relative to its largest derivative. Blocks are
+        left out where differences of fourth and sixth order disagree by a tenth of the
+        tolerance: there is a kink, or the function bends too much for them.
     """
     ahead, behind = (
         {
@@ -113,11 +113,11 @@ def check_derivatives(
     """Asserts that an answer is the function's value with all of its derivatives.
 
     Args:
-        function: Of doubles, of the variables.
-        answer: What the AutoDiff version gives, by the same variables.
+        function: Function of doubles, of the variables.
+        answer: Answer of the AutoDiff version, by the same variables.
         x: (D,) the variables' values.
-        step: Of the differences.
-        tolerance: Of the derivative, relative to its largest entry.
+        step: Step of the differences.
+        tolerance: Tolerance of the derivative, relative to its largest entry.
     """
 
     def flat(x: np.ndarray) -> np.ndarray:

@@ -53,11 +53,11 @@ def over_a_plate(
     """Returns a scene of a tool, 2 cm high, over a plate whose top is at z = 1 cm.
 
     Args:
-        folder: For the mesh files.
+        folder: Folder for the mesh files.
         waypoints: (time s, x, y, z m) of the tool's middle, z from the plate's top.
         tool: "cube" or "ball".
-        periodic: Of the hand's path.
-        grip: Of the hand.
+        periodic: Whether the hand's path is periodic.
+        grip: Grip of the hand.
     """
     tools = {
         "cube": trimesh.creation.box([2 * TOOL_HALF_HEIGHT] * 3),

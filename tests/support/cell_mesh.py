@@ -18,7 +18,7 @@ def cell_mesh(cells: Iterable[Cell], size_m: object) -> Mesh:
     Args:
         cells: Cell (i, j, k) fills [i, i + 1] × [j, j + 1] × [k, k + 1] sizes. Cells
             that touch must do so in a side.
-        size_m: Of a cell: one length, or (3,).
+        size_m: Size of a cell: one length, or (3,).
     """
     filled = set(cells)
     corners, quads = [], []

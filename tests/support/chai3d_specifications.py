@@ -1,4 +1,4 @@
-"""What CHAI3D 3.2.0 says of each device, under the names that it has there.
+"""The figures of CHAI3D 3.2.0 for each device, under the names that it has there.
 
 The neighbors of the devices that have a preset are in the table as well: figures of
 another model are told apart from a preset's own.

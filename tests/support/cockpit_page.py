@@ -166,5 +166,5 @@ class Page:
             self.browser.call("Input.dispatchKeyEvent", type=kind, **options)
 
     def trace(self):
-        """How long the force's line is; see TRACE."""
+        """Length of the force's line; see TRACE."""
         return self.evaluate(TRACE)

@@ -1,4 +1,4 @@
-"""A cockpit whose page is a list of what it asks for at which tick."""
+"""A cockpit whose page is a list of its requests by tick."""
 
 from types import SimpleNamespace
 
@@ -31,7 +31,7 @@ def find_tool(haptic, root):
 
 
 class ScriptedPage:
-    """Asks for things after some ticks, and keeps what it is told."""
+    """Makes requests after some ticks, and keeps what it is told."""
 
     def __init__(self, script):
         self._script = {tick: list(asked) for tick, asked in script.items()}
@@ -45,13 +45,13 @@ class ScriptedPage:
         self.times.append(time_s)
 
     def act(self, now_s, describe):
-        """Returns what is asked for after this tick."""
+        """Returns the requests after this tick."""
         if len(self.times) % 33 == 0:
             self.outlooks.append(describe())
         return self._script.get(len(self.times), [])
 
     def tell(self, name, body):
-        """Keeps what is told."""
+        """Keeps a message."""
         {"hello": self.hellos, "state": self.states}[name].append(body)
 
 
@@ -60,8 +60,8 @@ class CockpitRig:
 
     Attributes:
         page: A `ScriptedPage`.
-        haptics: What ran, one after the other.
-        seen: What `watch` returned of each tick.
+        haptics: Diagrams that ran, one after the other.
+        seen: Return values of `watch` at each tick.
     """
 
     def __init__(

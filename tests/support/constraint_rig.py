@@ -23,10 +23,10 @@ class ConstraintLoop:
 
     Attributes:
         q_WT: Pose (7,) of the tool.
-        V_WT: Its spatial velocity (6,), rad/s and m/s.
+        V_WT: Spatial velocity (6,) of the tool, rad/s and m/s.
         q_WH: Pose (7,) of the handle at the last tick.
-        work_J: Of each tick, what contact did on the tool.
-        anchors: Of friction, where there is some.
+        work_J: Work of contact on the tool in each tick, J.
+        anchors: Anchors of friction, where there is some.
     """
 
     def __init__(
@@ -61,11 +61,12 @@ class ConstraintLoop:
         V_WH: np.ndarray | None = None,
         F_applied: np.ndarray | None = None,
     ) -> _core.ConstraintStepResult:
-        """Advances by a tick in which the handle turns by nothing unless it is said.
+        """Advances by a tick, in which the handle does not turn unless V_WH is given.
 
         Args:
             q_WH: Pose (7,) of the handle at the tick's end.
-            V_WH: Its spatial velocity (6,). Defaults to its motion since the last.
+            V_WH: Spatial velocity (6,) of the handle. Defaults to its motion since the
+                last tick.
             F_applied: Other wrenches (6,) on the tool. Defaults to none.
         """
         if V_WH is None:
@@ -83,14 +84,14 @@ class ConstraintLoop:
 
 
 def contact_wrench(result: _core.ConstraintStepResult, p_WTo: np.ndarray) -> np.ndarray:
-    """What all rows push with on the tool at To, (6,) N·m and N."""
+    """Returns the wrench of all rows on the tool at To, (6,) N·m and N."""
     f = result.lambda_N[:, None] * result.contacts.nhat_BA_W
     arms = result.contacts.p_WCa - p_WTo
     return np.concatenate([np.cross(arms, f).sum(axis=0), f.sum(axis=0)])
 
 
 def take_turns(mesh: Mesh) -> Iterator[tuple[PressTool, Press]]:
-    """Presses of four tools in turn on a surface, without end."""
+    """Yields presses of four tools in turn on a surface, without end."""
     tools = make_tools()
     kinds = cycle(("spike", "ball", "box", "spoon"))
     for number, kind in enumerate(kinds):

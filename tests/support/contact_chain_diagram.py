@@ -20,19 +20,19 @@ from drake_haptics.systems.contact.penalty_force import PenaltyForce
 
 
 class ContactChain:
-    """From poses and velocities to wrenches, around a state.
+    """The chain from poses and velocities to wrenches, around a state.
 
     Attributes:
         diagram: Its inputs are X_WT, V_WT, X_WO_<i> and V_WO_<i>, its outputs
             those of `PenaltyForce` that are vectors.
-        context: At the state.
+        context: Context at the state.
     """
 
     def __init__(self, state: State, moving: tuple[bool, ...]):
         """Builds it.
 
         Args:
-            state: At which the diagram's context is.
+            state: State of the diagram's context.
             moving: Whether each object has ports; the others rest where they are.
         """
         objects = [
@@ -77,17 +77,17 @@ class ContactChain:
             self.diagram.get_output_port(0).Eval(self.context)
 
     def variables(self, state: State) -> np.ndarray:
-        """Pose and velocity (13) of each body that moves."""
+        """Returns pose and velocity (13) of each body that moves."""
         return np.hstack([state.q, state.V])[self._moving].ravel()
 
     def evaluate(self, output: str, x: np.ndarray) -> np.ndarray:
-        """An output at other variables, by the query that knows this state."""
+        """Returns an output at other variables, by the query that knows this state."""
         context = self.context.Clone()
         self._fix(self.diagram, context, x)
         return self.diagram.GetOutputPort(output).Eval(context)
 
     def differentiate(self, output: str, x: np.ndarray) -> AutoDiffVector:
-        """The same with its derivatives by the variables."""
+        """Returns the output with its derivatives by the variables."""
         context = self.context.Clone()
         self._fix(self.diagram, context, x)
         self.query.prepare_conversion(self.query.GetMyMutableContextFromRoot(context))

@@ -18,12 +18,14 @@ SITE_SPACING_M = 0.2
 
 @dataclass(frozen=True)
 class Site:
-    """A slab that stands somewhere of its own, and what is pressed into it.
+    """A slab that stands somewhere of its own, and the bodies pressed into it.
 
     Attributes:
-        R: Orientation; the slab's top faces along its z.
-        tips: (n, 3) of spikes, in the site's frame: the last number is the distance.
-        cubes: (n, 4) of cubes: x, y and distance of the lowest corner (m), tilt (rad).
+        R: Orientation of the slab; its top faces along z.
+        tips: (n, 3) tips of spikes, in the site's frame: the last number is the
+            distance.
+        cubes: (n, 4) x, y and distance of the lowest corner of cubes (m), and tilt
+            (rad).
         object: Index of the object that the slab belongs to.
     """
 

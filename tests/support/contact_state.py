@@ -1,7 +1,7 @@
 """Contact states at random, and the chain from poses to wrenches as a function.
 
-What the derivatives of the chain are held against: functions of doubles that ask the
-query again at each displaced pose.
+The derivatives of the chain are held against functions of doubles that ask the query
+again at each displaced pose.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ class WrenchJacobian:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where all is and how it moves: a tool, and objects that may overlap.
+    """The poses and velocities of a tool, and of objects that may overlap.
 
     Attributes:
         bodies: The tool and the objects.
-        tracker: Knows the contacts near this state.
-        method: Of clustering.
+        tracker: Tracker that knows the contacts near this state.
+        method: Method of clustering.
         q: (1 + m, 7) poses of the bodies.
-        V: (1 + m, 6) their spatial velocities.
+        V: (1 + m, 6) spatial velocities of the bodies.
     """
 
     bodies: tuple[_core.ConvexPieces, ...]
@@ -69,12 +69,12 @@ class State:
         return np.hstack([self.q, self.V]).ravel()
 
     def at(self, x: np.ndarray) -> State:
-        """The state with other variables."""
+        """Returns the state with other variables."""
         rows = np.reshape(x, (-1, 13))
         return replace(self, q=rows[:, :7], V=rows[:, 7:])
 
     def displaced(self, body: int, by: np.ndarray) -> State:
-        """With one body turned and moved by a displacement (6,)."""
+        """Returns the state with one body turned and moved by a displacement (6,)."""
         q = self.q.copy()
         R = Rotation.from_rotvec(by[:3]) * Rotation.from_quat(q[body, [1, 2, 3, 0]])
         x, y, z, w = R.as_quat()
@@ -82,26 +82,26 @@ class State:
         return replace(self, q=q)
 
     def faster(self, body: int, by: np.ndarray) -> State:
-        """With another velocity (6,) added to a body's."""
+        """Returns the state with another velocity (6,) added to a body's."""
         V = self.V.copy()
         V[body] += by
         return replace(self, V=V)
 
     def contacts(self) -> _core.ContactSet:
-        """What the query answers here."""
+        """Returns the contacts of the query here."""
         tracker = copy.deepcopy(self.tracker)
         for i, q in enumerate(self.q[1:]):
             tracker.set_object_pose(i, q)
         return tracker.query(self.q[0])
 
     def cluster(self, contacts):
-        """Clusters of contacts here, with derivatives if those have them."""
+        """Returns clusters of contacts here, with derivatives if those have them."""
         if self.method == "octree":
             return _core.cluster_contacts(contacts, 2 * T, T)
         return _core.share_stiffness(contacts, T)
 
     def wrench(self) -> _core.PenaltyWrench:
-        """The chain of doubles."""
+        """Returns the chain of doubles."""
         clusters = self.cluster(self.contacts())
         m = len(self.bodies) - 1
         return _core.penalty_force(
@@ -166,7 +166,7 @@ class State:
         ]
 
     def _speeds(self, clusters: _core.ClusterSet) -> np.ndarray:
-        """How fast surfaces part at each cluster, m/s."""
+        """Returns how fast surfaces part at each cluster, m/s."""
 
         def velocity(bodies: np.ndarray) -> np.ndarray:
             V, p = self.V[bodies], self.q[bodies, 4:]
@@ -184,7 +184,7 @@ def _rows(vector: AutoDiffVector, starts: object, size: int) -> AutoDiffVector:
 
 
 def keeps_features(state: State, reach: float) -> bool:
-    """Whether features are the same all around, each variable changed by `reach`."""
+    """Tells whether features are the same wherever variables move by `reach`."""
     here, x = state.features(), state.x
     return all(
         state.at(x + sign * reach * axis).features() == here
@@ -206,13 +206,13 @@ def random_states(
     """Random touches; a second object is a little beside the first.
 
     Args:
-        tool: What is moved there.
-        solid: Every object.
-        method: Of clustering.
-        count: How many.
+        tool: Tool that is moved there.
+        solid: Shape of every object.
+        method: Method of clustering.
+        count: Number of states.
         num_objects: One or two.
-        seed: Of what is random.
-        touch: Gives a pose (7,) of the tool at which it may touch.
+        seed: Seed of all that is random.
+        touch: Function that returns a pose (7,) of the tool at which it may touch.
     """
     rng = np.random.default_rng(seed)
     found = []
@@ -241,14 +241,14 @@ def check_every_column(
     step: float,
     parts: Mapping[str, object] | None = None,
 ) -> None:
-    """Holds derivatives of a set by all that a state has against differences.
+    """Holds derivatives of a set by the whole state against differences.
 
     Args:
-        states: Random ones; those whose features change within a step are left out.
-        evaluate: Returns a set of doubles.
-        differentiate: Returns the same with derivatives.
-        columns: Of the set.
-        step: Of the differences.
+        states: Random states; those whose features change within a step are left out.
+        evaluate: Function that returns a set of doubles.
+        differentiate: Function that returns the same set with derivatives.
+        columns: Columns of the set.
+        step: Step of the differences.
         parts: Rows, by name, that are also held each for itself.
     """
     parts = dict(parts or {})

@@ -24,11 +24,11 @@ def add_device_on_fixed_tool(
     """Adds a device and couples it to a tool that stays at a pose.
 
     Args:
-        builder: The diagram that gets them.
-        device: Shows the coupling's wrench.
-        gains: Of the coupling.
-        X_WT: The tool's pose; the coupling is at rest where the handle has it too.
-        control: Goes between the coupling and the device.
+        builder: Builder of the diagram.
+        device: Device that shows the coupling's wrench.
+        gains: Gains of the coupling.
+        X_WT: Pose of the tool; the coupling is at rest where the handle has it too.
+        control: Control between the coupling and the device.
     """
     builder.AddSystem(device)
     coupling = builder.AddSystem(VirtualCoupling(gains, RigidTransform()))

@@ -3,7 +3,7 @@
 After K. Erleben, "Methodology for assessing mesh-based contact point methods", ACM
 Transactions on Graphics 37(3), 2018, section 5: spikes, wedges, cracks, holes, sliding,
 cliff edges and internal edges, where vertices and edges meet that have no one normal.
-The shapes are made here, of centimeters, and a handle presses where gravity does there.
+The shapes are made here, of centimeters, and a handle presses instead of gravity.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ _ACROSS = np.array([[0, -1.0, 0], [1, 0, 0], [0, 0, 1]])
 
 @dataclass(frozen=True, eq=False)
 class DegenerateScene:
-    """A tool, what it meets, and where the handle leads it.
+    """A tool, the solid that it meets, and the handle's way.
 
     Attributes:
         tool: (n, 3) vertices of a convex tool, m; the tool's frame is the world's where
@@ -200,7 +200,7 @@ class Handle(DeviceBackend):
 
 @dataclass(frozen=True)
 class Run:
-    """What a run showed, tick by tick.
+    """The motion and the wrenches of a run, tick by tick.
 
     Attributes:
         X_WT: (n, 7) poses of the tool.

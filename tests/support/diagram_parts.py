@@ -1,4 +1,4 @@
-"""What a built diagram holds: names of systems and of what feeds them."""
+"""The parts of a built diagram: names of systems and of the outputs that feed them."""
 
 from __future__ import annotations
 

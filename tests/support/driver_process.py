@@ -21,8 +21,8 @@ class DriverProcess:
     """A driver that prints its address, and writes its figures at the end.
 
     Args:
-        command: What to start.
-        json_file: Where it writes the figures.
+        command: Command to start.
+        json_file: File that it writes the figures to.
     """
 
     def __init__(self, command, json_file):
@@ -52,7 +52,7 @@ class DriverProcess:
 
     @property
     def pid(self):
-        """Of the process."""
+        """Number of the process."""
         return self._process.pid
 
     def send_signal(self, number):
@@ -107,7 +107,7 @@ class WatchedLink(LossyLink):
 
 
 def check_figures(figures):
-    """Asserts what must hold of a driver's figures after anything."""
+    """Asserts the figures that a driver must have after anything."""
     assert figures["limit_violations"] == 0
     assert figures["non_finite_values"] == 0
     assert figures["max_force_N"] <= figures["force_limit_N"] * (1 + 1e-9)

@@ -37,7 +37,7 @@ def make_chain(
     friction: StickSlipFriction | None = None,
     braking: PreContactBraking | None = None,
 ) -> Diagram:
-    """Returns the query and what follows it.
+    """Returns the query and the systems after it.
 
     Its inputs are poses and velocities by the names that they have in the systems, its
     outputs `<system>.wrench_model`, of braking alone, then with its `F_O_W`, or of the

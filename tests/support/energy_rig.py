@@ -23,7 +23,7 @@ def make_ledger(sources=(), *, gains=NO_GAINS, c=(0, 0, 0), q_HT=IDENTITY):
 
 
 def add(ledger, tool_state, sources=(), stored=None, **changes):
-    """Adds a reading with nothing in it but what is given."""
+    """Adds a reading that holds only the given values."""
     reading = {
         "q_WH": IDENTITY,
         "F_Ho_W_rendered": np.zeros(6),
@@ -41,7 +41,7 @@ def model(F, K=None, B=None):
 
 
 def tool_at(x, v=0.0):
-    """The state of a tool at x on the first axis, that came there at speed v."""
+    """Returns the state of a tool at x on the first axis, that came at speed v."""
     return np.concatenate([[1, 0, 0, 0, x, 0, 0], v * X])
 
 

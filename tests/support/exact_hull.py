@@ -15,7 +15,7 @@ _MOST_TO_ENUMERATE = 24
 
 
 def binary_places(*arrays: np.ndarray) -> int:
-    """How many binary digits after the point write all the numbers exactly."""
+    """Returns the number of binary digits after the point that write all exactly."""
     return max(
         float(x).as_integer_ratio()[1].bit_length() - 1
         for array in arrays
@@ -48,7 +48,7 @@ def features(data: bytes) -> tuple[np.ndarray, np.ndarray]:
     triangles are the hull's exactly; else all triples and pairs stand for it.
 
     Args:
-        data: the bytes of an (n, 3) array of doubles.
+        data: Bytes of an (n, 3) array of doubles.
 
     Returns:
         Triples (k, 3) and pairs (m, 2) of vertex numbers.
@@ -71,7 +71,7 @@ def features(data: bytes) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _holds(points: np.ndarray, hull: ConvexHull) -> bool:
-    """Whether no point is outside any of the hull's triangles, exactly."""
+    """Tells whether no point is outside any of the hull's triangles, exactly."""
     P = integers(points, binary_places(points))
     middle = P[hull.vertices].sum(axis=0)
     for triangle in hull.simplices:
@@ -93,8 +93,8 @@ def closest_distance(a: np.ndarray, b: np.ndarray) -> tuple[int, int]:
     algorithm (1976) in integers: it cannot stop short. Zero if they touch or overlap.
 
     Args:
-        a: points (n, 3), Python integers.
-        b: points (m, 3) likewise.
+        a: Points (n, 3), Python integers.
+        b: Points (m, 3), likewise.
 
     Returns:
         Numerator and denominator.

@@ -30,12 +30,12 @@ class ExactPair:
     """Two vertex sets (n, 3) and (m, 3) at poses X_WA and X_WB (4, 4), unrounded.
 
     Attributes:
-        scale: what tolerances refer to, m: the largest distance of a vertex of A from
-            A's origin, plus the same of B.
-        a: posed vertices of A, integers (n, 3).
-        b: posed vertices of B, integers (m, 3).
-        a_float: posed vertices of A about `origin`, m, rounded once.
-        b_float: posed vertices of B likewise.
+        scale: Length that tolerances refer to, m: the largest distance of a vertex of A
+            from A's origin, plus the same of B.
+        a: Posed vertices of A, integers (n, 3).
+        b: Posed vertices of B, integers (m, 3).
+        a_float: Posed vertices of A about `origin`, m, rounded once.
+        b_float: Posed vertices of B likewise.
     """
 
     def __init__(
@@ -134,15 +134,15 @@ class ExactPair:
         return n, gaps, np.concatenate([number, number])
 
     def is_local_minimum(self, n_W: np.ndarray, slack: float) -> bool:
-        """Whether n is the normal of a facet of A ⊖ B that no touching facet beats.
+        """Tells whether n is a facet normal of A ⊖ B that no touching facet beats.
 
         Two facets touch where they share a vertex of A ⊖ B: the neighborhood of the
         paper's hubs.
 
         Args:
-            n_W: unit normal (3,), from B into A.
-            slack: by how much (m) a gap must be larger to count as better, and how far
-                n may be from the facet's own normal in its gap.
+            n_W: Unit normal (3,), from B into A.
+            slack: Amount (m) by which a gap must be larger to count as better, and by
+                which n may differ from the facet's own normal in its gap.
         """
         n, gaps, _ = self.directions
         near = (n @ n_W > 1 - 1e-12) & (abs(gaps - self.float_gap(n_W)) <= slack)
@@ -162,7 +162,7 @@ class ExactPair:
     def _may_touch(
         self, rows: np.ndarray, on_a: np.ndarray, on_b: np.ndarray
     ) -> np.ndarray:
-        """Which directions may have given vertices as supports, to round-off."""
+        """Returns which directions may have given supports, to round-off."""
         slack = 1e-11 * self.scale
         above_A, below_B = self._heights
         return (above_A[np.ix_(rows, on_a)].min(axis=1) <= slack) & (
@@ -171,13 +171,13 @@ class ExactPair:
 
     @functools.cached_property
     def _heights(self) -> tuple[np.ndarray, np.ndarray]:
-        """How far (m) each vertex is from supporting its body along each direction."""
+        """Returns how far (m) each vertex is from being a support in each direction."""
         n = self.directions[0]
         a, b = n @ self.a_float.T, n @ self.b_float.T
         return a - a.min(axis=1, keepdims=True), b.max(axis=1, keepdims=True) - b
 
     def _touches(self, k: int, on_a: np.ndarray, on_b: np.ndarray) -> bool:
-        """Whether direction k has supports among the given vertices, exactly."""
+        """Tells whether direction k has supports among the given vertices, exactly."""
         own_a, own_b = self._supports(self._direction(k))
         return bool(np.isin(own_a, on_a).any() and np.isin(own_b, on_b).any())
 

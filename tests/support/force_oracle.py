@@ -22,14 +22,14 @@ LEAST_EXTENT_M2 = 1e-24
 
 @dataclass(frozen=True)
 class Pushes:
-    """What each cluster pushes with.
+    """The push of each cluster.
 
     Attributes:
-        compression: (k,) the elastic force over the stiffness, m.
-        damping_share: (k,) of the damping.
+        compression: (k,) elastic force over the stiffness, m.
+        damping_share: (k,) share of the damping.
         nhat: (k, 3) directions.
         p: (k, 3) places, m.
-        objects: (k,) on which object.
+        objects: (k,) object of each cluster.
     """
 
     compression: np.ndarray
@@ -40,14 +40,14 @@ class Pushes:
 
 
 def fade(x: np.ndarray, width: object) -> np.ndarray:
-    """One at nothing, zero from `width` on."""
+    """Returns 1 at 0, falling to 0 from `width` on."""
     x, width = np.broadcast_arrays(x, np.asarray(width, float))
     ratio = np.divide(x, width, out=np.ones_like(width), where=width > 0)
     return np.where(x == 0, 1, np.clip(1 - ratio, 0, 1))
 
 
 def sameness(contacts: _core.ContactSet, pushing: np.ndarray, t: float) -> np.ndarray:
-    """How far each contact is part of the same constraint as each other, 0 to 1."""
+    """Returns how far contacts share a constraint, pair by pair, 0 to 1."""
     n, p = contacts.nhat_BA_W[pushing], contacts.p_WC[pushing]
     w = t - contacts.distance[pushing]
     flushness, extent = contacts.flushness[pushing], contacts.extent[pushing]
@@ -93,7 +93,7 @@ def skin_forces(C: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 def skin_forces_of_all_sets(C: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """The same by trying every set of contacts that may push."""
+    """Returns the same minimum by trying every set of contacts that may push."""
     for choice in product((False, True), repeat=len(w)):
         chosen = np.array(choice, dtype=bool)
         force = np.zeros(len(w))

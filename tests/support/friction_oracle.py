@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 @dataclass(frozen=True)
 class Law:
-    """Parameters: μ of each object, r, m, m."""
+    """Parameters: μ of each object, static ratio r, break-away and reach, m."""
 
     coefficient: tuple[float, ...]
     static_ratio: float
@@ -40,7 +40,7 @@ def matrix(q: np.ndarray) -> np.ndarray:
 
 
 def moved(X_last: np.ndarray, X: np.ndarray, t: Touch) -> tuple[np.ndarray, np.ndarray]:
-    """Returns where a body took the contact's point and normal."""
+    """Returns the point and the normal of the contact as a body took them along."""
     change = X @ np.linalg.inv(X_last)
     return change[:3, :3] @ t.p + change[:3, 3], change[:3, :3] @ t.n
 

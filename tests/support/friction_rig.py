@@ -21,7 +21,7 @@ LAW = Law((0.5,), 1.2, 1e-4, 5e-3)
 
 @dataclass(frozen=True)
 class Tick:
-    """What one tick saw: SI units, world frame."""
+    """The values of one tick: SI units, world frame."""
 
     state: np.ndarray  # (13,) tool's pose and velocity
     clusters: _core.ClusterSet
@@ -40,13 +40,13 @@ class Tick:
 
 
 class FrictionRig:
-    """The tool, what it touches, and what friction remembers.
+    """The tool, the objects that it touches, and the memory of friction.
 
     Attributes:
-        state: (13,) the tool's pose and velocity; set it to move the tool.
+        state: (13,) pose and velocity of the tool; set it to move the tool.
         q_WO: (m, 7) poses of the objects; set them to move an object that `moves`.
-        V_WO: (m, 6) their spatial velocities, for the damping.
-        memory: What friction remembers of the last tick.
+        V_WO: (m, 6) spatial velocities of the objects, for the damping.
+        memory: Memory of friction from the last tick.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class FrictionRig:
         self.V_WO = np.zeros((len(objects), 6))
 
     def look(self) -> Tick:
-        """Forces now; changes nothing."""
+        """Returns the forces now; changes nothing."""
         for i, q in enumerate(self.q_WO):
             self._tracker.set_object_pose(i, q)
         contacts = self._tracker.query(self.state[:7])
@@ -94,7 +94,7 @@ class FrictionRig:
         return Tick(self.state.copy(), clusters, wrench, friction)
 
     def remember(self, tick: Tick) -> None:
-        """Takes a look for the last tick."""
+        """Takes a tick as the last one."""
         self.memory = tick.friction.next_state
 
     def forget(self) -> None:

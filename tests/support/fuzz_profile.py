@@ -1,4 +1,4 @@
-"""How many examples the fuzz tests try: few and always the same, or many.
+"""The number of examples that the fuzz tests try: few and always the same, or many.
 
 `HYPOTHESIS_PROFILE=fuzz pytest tests/fuzz` tries thousands of new ones.
 """

@@ -51,14 +51,14 @@ def poses(draw: Callable[..., Any]) -> np.ndarray:
 
 
 def wrong_points() -> st.SearchStrategy[object]:
-    """What is no (n, 3) array of finite numbers with one row or more."""
+    """Values that are not an (n, 3) array of finite numbers with one row or more."""
     bad_value = st.sampled_from([np.nan, np.inf, -np.inf, 1e200])
     with_bad_value = bad_value.map(lambda v: np.array([[0, 0, 0], [1, v, 2]]))
     return st.one_of(_wrong_arrays(), with_bad_value, st.just(np.zeros((0, 3))))
 
 
 def wrong_poses() -> st.SearchStrategy[object]:
-    """What is no (4, 4) rigid pose."""
+    """Values that are not a (4, 4) rigid pose."""
 
     def with_entry(entry: tuple[int, float]) -> np.ndarray:
         X = np.eye(4)

@@ -22,8 +22,8 @@ class GateRig:
 
     Attributes:
         gate: The gate.
-        ms: Its time, ms.
-        forces: What was shown along z in each tick, N.
+        ms: Time of the gate, ms.
+        forces: Forces shown along z in each tick, N.
     """
 
     def __init__(self, **limits: float) -> None:
@@ -36,12 +36,12 @@ class GateRig:
 
     @property
     def state(self) -> GateState:
-        """Whether it shows force."""
+        """State of the gate: whether it shows force."""
         return GateState(self.gate.state)
 
     @property
     def fault(self) -> Fault:
-        """Why not."""
+        """Reason of its fault."""
         return Fault(self.gate.fault)
 
     def packet(
@@ -82,13 +82,13 @@ class GateRig:
         return F
 
     def run(self, ticks: int, *args: float, **command: object) -> None:
-        """Sends a command in each of so many ticks."""
+        """Sends a command in each of a number of ticks."""
         for _ in range(ticks):
             self.send(*args, **command)
             self.step()
 
     def wait(self, ticks: int) -> None:
-        """Lets so many ticks pass without a word of a host."""
+        """Lets a number of ticks pass without a word of a host."""
         for _ in range(ticks):
             self.step()
 

@@ -60,7 +60,7 @@ class HaplyService:
 
     @property
     def uri(self):
-        """Where it listens."""
+        """Address at which it listens."""
         return f"ws://127.0.0.1:{self.port}"
 
     def __enter__(self):

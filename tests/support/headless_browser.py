@@ -40,14 +40,14 @@ def find_browser() -> str | None:
 
 
 class PageGoneError(RuntimeError):
-    """The page went to another while it was asked."""
+    """The page changed to another while it was asked."""
 
 
 class HeadlessBrowser:
     """One page of a Chromium, driven through its debugging port.
 
     Attributes:
-        errors: what the page complained about: console errors and exceptions.
+        errors: Complaints of the page: console errors and exceptions.
     """
 
     def __init__(self, executable: str, timeout_s: float = 180.0):
@@ -108,7 +108,7 @@ class HeadlessBrowser:
             time.sleep(0.1)
 
     def _is_true(self, expression: str) -> bool:
-        """Returns whether it is true of the page that is there after asking."""
+        """Tells whether it is true of the page that is there after asking."""
         try:
             return bool(self.evaluate(expression))
         except PageGoneError:
@@ -127,7 +127,7 @@ class HeadlessBrowser:
         """Returns the page as pixels (height, width, 3) in 0..255.
 
         Args:
-            box: x, y, width, height of a part of it, px; all of it where not given.
+            box: Part of it, as x, y, width, height, px; all of it where not given.
         """
         clip = {}
         if box:
@@ -157,7 +157,7 @@ class HeadlessBrowser:
                 return dict(answer["result"])
 
     def _note(self, message: dict[str, Any]) -> None:
-        """Keeps what is a complaint of the page."""
+        """Keeps a message that is a complaint of the page."""
         parameters = message.get("params", {})
         if message.get("method") == "Runtime.exceptionThrown":
             self.errors.append(str(parameters["exceptionDetails"]))

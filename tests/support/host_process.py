@@ -14,10 +14,10 @@ class HostProcess:
     """A run whose Enter key a test can press.
 
     Args:
-        port: Of the device, or of a relay to it.
-        json_file: Where it writes its figures at the end.
+        port: Port of the device, or of a relay to it.
+        json_file: File that it writes its figures to at the end.
         options: More words of the command line.
-        scene: What it runs.
+        scene: Scene that it runs.
     """
 
     def __init__(self, port, json_file, *options, scene="cup_spoon"):
@@ -44,7 +44,7 @@ class HostProcess:
 
     @property
     def is_running(self):
-        """Whether it has not ended."""
+        """Tells whether it has not ended."""
         return self._process.poll() is None
 
     def wait(self):

@@ -1,4 +1,4 @@
-"""What is true of convex pieces, from triangles and planes alone."""
+"""Truth about convex pieces, from triangles and planes alone."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from drake_haptics import Decomposition
 
 
 def deepest_outside(pieces: Decomposition, count: int, seed: int = 0) -> float:
-    """How far the worst of `count` random points of the hulls is outside, m.
+    """Returns how far the worst of `count` random points of the hulls is outside, m.
 
     Args:
-        pieces: of a mesh all of which bounds solids.
-        count: of points, half of them in virtual facets, half within hulls.
-        seed: of the choice.
+        pieces: Pieces of a mesh all of which bounds solids.
+        count: Number of points, half of them in virtual facets, half within hulls.
+        seed: Seed of the choice.
     """
     rng = np.random.default_rng(seed)
     hulls = [p for p in pieces.pieces if p.dimension == 3]
@@ -35,11 +35,11 @@ def deepest_outside(pieces: Decomposition, count: int, seed: int = 0) -> float:
 
 
 def deepest_surface(pieces: Decomposition) -> float:
-    """How deep any of the mesh's surface is within a hull, m.
+    """Returns how deep any of the mesh's surface is within a hull, m.
 
-    Where no surface is within a hull, all of it is on one side of the surface. Looked
-    at are the corners, the middles of the edges and the middle of each triangle, of
-    the hull's own component and of cavities; another solid may overlap.
+    Where no surface is within a hull, all of it is on one side of the surface. Checked
+    are the corners, the middles of the edges and the middle of each triangle, of the
+    hull's own component and of cavities; another solid may overlap.
     """
     mesh = pieces.mesh
     corners = mesh.vertices[mesh.triangles]
@@ -67,11 +67,12 @@ def deepest_surface(pieces: Decomposition) -> float:
 
 
 def lost_share(pieces: Decomposition, tolerance: float) -> float:
-    """Share of the mesh's area that no original facet of its piece stands for.
+    """Returns the share of the mesh's area without an original facet of its piece.
 
     Args:
-        pieces: of any mesh.
-        tolerance: within which a triangle's corners are in its facet's plane, m.
+        pieces: Pieces of any mesh.
+        tolerance: Distance within which a triangle's corners are in its facet's plane,
+            m.
     """
     V, F = pieces.mesh.vertices, pieces.mesh.triangles
     vectors = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]) / 2

@@ -42,7 +42,7 @@ class Import(NamedTuple):
     Attributes:
         importer: The module that imports.
         imported: The module that is imported.
-        line: Where the importer says so.
+        line: Line of the importer with the import.
     """
 
     importer: str
@@ -104,7 +104,7 @@ def _list_imported(node: ast.AST) -> Iterator[str]:
 def find_upward(imports: Iterable[Import]) -> list[Import]:
     """Returns the imports that go from a folder to one after it.
 
-    The package's own file is after all: it offers what they have.
+    The package's own file is after all: it offers the names of all.
     """
     return [
         one for one in imports if _calc_level(one.imported) > _calc_level(one.importer)
@@ -119,12 +119,12 @@ def _calc_level(module: str) -> int:
 
 
 def find_circles(imports: Iterable[Import]) -> list[list[str]]:
-    """Returns the largest sets of modules each of which leads to each other one."""
+    """Returns the largest sets of modules that each lead to one another."""
     return _find_circles((one.importer, one.imported) for one in imports)
 
 
 def find_folder_circles(imports: Iterable[Import]) -> list[list[str]]:
-    """Returns the circles among what stands beside one another in a package.
+    """Returns the circles among the modules and folders of one package.
 
     Modules and folders of one package are compared; a folder imports what any module
     in it imports.

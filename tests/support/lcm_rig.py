@@ -31,7 +31,7 @@ START = np.array(
 
 
 def make_arm():
-    """An arm whose hand rests for half a second, then goes 2 cm down."""
+    """Returns an arm whose hand rests for half a second, then goes 2 cm down."""
     preset = load_device_preset("phantom_premium_1_5_6dof")
     above, below = RigidTransform(START), RigidTransform(START - [0.0, 0.0, 0.02])
     path = HandPath([0.0, 0.5, 0.7, 1.5], [above, above, below, below], periodic=False)
@@ -46,7 +46,7 @@ def make_arm():
 
 
 def make_spring(stiffness_N_per_m=100.0, origin=START):
-    """F_Ho_B (6) of X_BH (7): a spring to a point, nothing to turn against."""
+    """Returns F_Ho_B (6) of X_BH (7): a spring to a point, nothing to turn against."""
     D, y0 = np.zeros((6, 7)), np.zeros(6)
     D[3:, 4:] = -stiffness_N_per_m * np.eye(3)
     y0[3:] = stiffness_N_per_m * np.asarray(origin)
@@ -55,7 +55,7 @@ def make_spring(stiffness_N_per_m=100.0, origin=START):
 
 
 def add_lcm(builder, lcm):
-    """Adds what has subscriptions of Drake's systems handled; not those of Python."""
+    """Adds a system that handles subscriptions of Drake's systems; not Python's."""
     builder.AddSystem(LcmInterfaceSystem(lcm))
 
 
@@ -73,7 +73,7 @@ def add_device(builder, lcm, arm):
 
 
 def add_host(builder, lcm, law):
-    """Adds a host's side: what it gives back for the handle's pose."""
+    """Adds a host's side: its response to the handle's pose."""
     builder.AddSystem(law)
     receiver = builder.AddSystem(HapticStatusReceiver())
     sender = builder.AddSystem(HapticCommandSender(PERIOD_S))

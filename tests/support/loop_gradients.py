@@ -1,7 +1,7 @@
 """Derivatives of a scene's whole loop over one period, against differences.
 
-The loop is brought into contact by simulation. What is differentiated is its sampled
-map: the update of all discrete state, and the rates with what was updated held.
+The loop is brought into contact by simulation. Its sampled map is differentiated: the
+update of all discrete state, and the rates with the updated state held.
 """
 
 from __future__ import annotations
@@ -63,11 +63,12 @@ class LoopGradients:
     """Both derivatives of one state, rows of the update above those of the rates.
 
     Attributes:
-        values: (rows,) what is differentiated.
-        found: (rows, n) by AutoDiffXd.
-        expected: (rows, n) by differences; NaN in columns where these tell of a kink.
-        is_varied: (n,) which columns are compared; the others are NaN too.
-        num_updated: How many rows are of the update.
+        values: (rows,) differentiated values.
+        found: (rows, n) derivatives by AutoDiffXd.
+        expected: (rows, n) derivatives by differences; NaN in columns where these tell
+            of a kink.
+        is_varied: (n,) whether each column is compared; the others are NaN too.
+        num_updated: Number of rows of the update.
     """
 
     values: np.ndarray
@@ -78,7 +79,7 @@ class LoopGradients:
 
     @property
     def is_kink(self) -> np.ndarray:
-        """Which columns (n,) have no derivative that differences could tell."""
+        """Columns (n,) that have no derivative that differences could tell."""
         return self.is_varied & np.isnan(self.expected).any(axis=0)
 
     @property
@@ -117,7 +118,7 @@ def calc_gradients(loop: HapticDiagram, context: Context) -> LoopGradients:
 def find_varied(loop: HapticDiagram, context: Context) -> np.ndarray:
     """Returns which numbers of the state mean something now.
 
-    Empty slots of friction's memory do not: what is written there is no contact.
+    Empty slots of friction's memory do not: they hold no contact.
     """
     is_varied = np.ones(len(get_state(context)), dtype=bool)
     friction = loop.loop.effects.friction

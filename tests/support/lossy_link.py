@@ -12,14 +12,14 @@ import time
 
 @dataclasses.dataclass
 class Trouble:
-    """What happens to packets on their way, each way; may change while they run.
+    """The trouble of packets on their way, each way; may change while they run.
 
     Attributes:
         loss: Share of packets that never arrive.
-        jitter_s: Each is late by a random time up to this, s. What is later than its
+        jitter_s: Largest random delay of a packet, s. One that is later than its
             successor by this is overtaken.
         reorder: Share of packets held back for `reorder_s`, so that several overtake.
-        reorder_s: How long, s.
+        reorder_s: Time for which they are held back, s.
         duplicate: Share of packets that arrive twice.
         corrupt: Share of packets in which one bit is turned.
         cut: Whether nothing passes at all.
@@ -40,15 +40,15 @@ class LossyLink:
     Answers go to the host that spoke last. Use it as a context manager.
 
     Args:
-        device_port: Of the device, on this machine.
-        trouble: What happens to packets; nothing where not given.
-        seed: Of all chance in it.
+        device_port: Port of the device, on this machine.
+        trouble: Trouble of the packets; none where not given.
+        seed: Seed of all chance in it.
         on_state: Called in the thread with each packet that the device sent, before
             anything happens to it.
 
     Attributes:
-        trouble: May be changed at any time.
-        counts: Packets by what happened to them.
+        trouble: Trouble of the packets; may be changed at any time.
+        counts: Numbers of packets by their fate.
         last_command: The latest packet from a host, as it came.
     """
 
@@ -71,7 +71,7 @@ class LossyLink:
 
     @property
     def port(self):
-        """Where hosts find the device."""
+        """Port at which hosts find the device."""
         return self._host_side.getsockname()[1]
 
     def __enter__(self):
@@ -90,8 +90,8 @@ class LossyLink:
         """Sends packets to the device as a stranger, beside the relay.
 
         Args:
-            packets_per_s: How fast; slower where the machine cannot.
-            packets: How many.
+            packets_per_s: Rate of packets; lower where the machine cannot.
+            packets: Number of packets.
             make_packet: Called with the number of each.
         """
         sent = 0
@@ -121,13 +121,13 @@ class LossyLink:
         self._take_from(sockets)
 
     def _take_from(self, sides):
-        """Takes what has come and lets happen to it what may."""
+        """Takes the packets that have come, and applies the trouble to them."""
         for side in sides:
             for packet, sender in _take(side):
                 self._pass_on(packet, sender, to_device=side is self._host_side)
 
     def _pass_on(self, packet, sender, *, to_device):
-        """Lets happen to a packet what may."""
+        """Applies the trouble to a packet."""
         trouble, chance = self.trouble, self._random.random
         if to_device:
             self._host = sender

@@ -1,4 +1,4 @@
-"""The parts of a Markdown page that a reader types, or is shown as what comes of it."""
+"""The parts of a Markdown page that a reader types, and the outputs that it shows."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class Block:
     """A fenced block.
 
     Attributes:
-        language: Behind the fence; "" where there is none.
-        text: Between the fences.
-        line: Of the opening fence, from 1.
+        language: Language behind the fence; "" where there is none.
+        text: Text between the fences.
+        line: Number of the opening fence's line, from 1.
     """
 
     language: str

@@ -9,7 +9,7 @@ REAL_MESHES = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 
 
 def real_mesh(name):
-    """The path of a real mesh; skips the test where there are none."""
+    """Returns the path of a real mesh; skips the test where there is none."""
     path = REAL_MESHES / name
     if not path.exists():
         pytest.skip(f"the real mesh {name} is not beside the repository")
@@ -32,7 +32,7 @@ def box(size=(1.0, 1.0, 1.0), at=(0.0, 0.0, 0.0)):
 
 
 def joined(*meshes):
-    """One pair of arrays of several."""
+    """Returns one pair of arrays of several."""
     starts = np.cumsum([0] + [len(V) for V, _ in meshes])
     V = np.concatenate([V for V, _ in meshes])
     F = np.concatenate([F + k for (_, F), k in zip(meshes, starts[:-1], strict=True)])
@@ -53,7 +53,7 @@ def l_prism():
 
 
 def corner_set(V, F):
-    """The triangles as a set of cyclic corner triples: all that a surface is."""
+    """Returns the triangles as a set of cyclic corner triples, the whole surface."""
     return {
         min((a, b, c), (b, c, a), (c, a, b))
         for a, b, c in ((tuple(V[i]) for i in t) for t in F)

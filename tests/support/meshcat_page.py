@@ -1,4 +1,4 @@
-"""A Meshcat page without a browser: says what a page would say."""
+"""A Meshcat page without a browser: sends the messages of a page."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class MeshcatPage:
     def send_gamepad(
         self, axes: list[float], buttons: list[float], index: int = 0
     ) -> None:
-        """Says how sticks and buttons are, and waits until Meshcat knows."""
+        """Sends the state of sticks and buttons, and waits until Meshcat knows."""
         gamepad = {"index": index, "button_values": buttons, "axes": axes}
         self._send(type="gamepad", name="", gamepad=gamepad)
         self._wait(
@@ -73,7 +73,7 @@ class MeshcatPage:
         self.send_gamepad([float(self._gamepads)], [])
 
     def send_camera(self, X_WC: RigidTransform) -> None:
-        """Says where the camera is, as three.js counts: y up, z to the viewer."""
+        """Sends the camera's pose, as three.js counts: y up, z to the viewer."""
         # three.js's world has y up: its axes are Drake's x, z, -y.
         R_TW = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
         matrix = np.eye(4)
@@ -88,7 +88,7 @@ class MeshcatPage:
         self._wait(known)
 
     def send_camera_numbers(self, elements: list[float]) -> None:
-        """Says that the camera's matrix, column by column, is this."""
+        """Sends the camera's matrix, column by column."""
         self._send(
             type="camera_pose", name="", camera_pose=elements, is_perspective=True
         )

@@ -49,7 +49,7 @@ def signed_distance(a_W: np.ndarray, b_W: np.ndarray) -> float:
 
 
 def locally_deepest(a_W: np.ndarray, b_W: np.ndarray, n_W: np.ndarray) -> bool:
-    """Whether n is the normal of a facet of A ⊖ B that no touching one beats."""
+    """Tells whether n is the normal of a facet of A ⊖ B that no touching one beats."""
     difference = (a_W[:, None, :] - b_W[None, :, :]).reshape(-1, 3)
     hull = ConvexHull(difference)
     facets = -hull.equations[:, :3]  # normals from B into A

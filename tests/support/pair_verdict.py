@@ -14,7 +14,7 @@ SHARE = 1e-9
 
 @dataclass(frozen=True)
 class Answer:
-    """What a library said: distance (m), unit normal from B into A, witnesses (m)."""
+    """A library's answer: distance (m), unit normal from B into A, witnesses (m)."""
 
     distance: float
     nhat_BA_W: np.ndarray
@@ -24,13 +24,13 @@ class Answer:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How an answer compares.
+    """The comparison of an answer with the exact one.
 
     Attributes:
-        error: of the distance, as a share of scale + |distance|. Of a tracked depth:
-            against the exact gap along its own normal.
-        complaints: what is wrong, in words; empty if the answer is right.
-        is_global: whether the distance is the exact one.
+        error: Error of the distance, as a share of scale + |distance|; of a tracked
+            depth, against the exact gap along its own normal.
+        complaints: Complaints in words; empty if the answer is right.
+        is_global: Whether the distance is the exact one.
     """
 
     error: float
@@ -49,7 +49,7 @@ def outside(points: np.ndarray, p: np.ndarray) -> float:
 
 
 def judge(exact: ExactPair, answer: Answer, tracked: bool) -> Verdict:
-    """The verdict; a tracked depth need not be the global one."""
+    """Returns the verdict; a tracked depth need not be the global one."""
     truth, d, n = exact.signed_distance, answer.distance, answer.nhat_BA_W
     numbers = np.concatenate([[d], n, answer.p_WCa, answer.p_WCb])
     if not np.isfinite(numbers).all():

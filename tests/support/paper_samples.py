@@ -76,7 +76,7 @@ def make_analysis(depth_exponent=0.02, depth_us=0.5):
 
 
 def make_table1():
-    """A row that is better, one that is not, and one that there is none of."""
+    """Returns a row that is better, one that is not, and one without figures."""
     return (
         ModelFigures("Torus", 2000, 67, "own shape", 2000, 54, 4, 1981, 913, 0.034),
         ModelFigures("Cup", 500, 190, "cup_500.obj", 500, 197, 104, 854, 354, 0.005),
@@ -86,7 +86,7 @@ def make_table1():
 
 @cache
 def make_evaluation():
-    """All parts; what is frozen is made once."""
+    """Returns all parts; those that are frozen are made once."""
     return PaperEvaluation(
         machine={
             "processor": "<a processor>",

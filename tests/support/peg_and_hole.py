@@ -1,4 +1,4 @@
-"""A peg, and a hole that is as much wider as one asks for."""
+"""A peg, and a hole that is wider by any play."""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ class PlantScene:
         return self
 
     def pose(self, name: str) -> RigidTransform:
-        """Returns where a body is."""
+        """Returns the pose of a body."""
         return self.plant.EvalBodyPoseInWorld(
             self.context, self.plant.GetBodyByName(name)
         )

@@ -1,4 +1,4 @@
-"""Counts where contacts or their force jump and the tool's motion does not say why."""
+"""Counts where contacts or their force jump without a reason in the tool's motion."""
 
 from __future__ import annotations
 
@@ -24,13 +24,15 @@ class Jumps:
 
     Attributes:
         ticks: Ticks with a contact on them and on the one before.
-        distance: The least distance of all contacts changed by more than the motion.
-        turn: A pair of pieces that stayed in depth turned its normal by over 60°.
-        force: The contacts' force changed by more than the motion explains.
-        force_alone: The same on ticks where neither of the above happened, nor a
-            normal of the deepest contact turned: the clustering's doing.
+        distance: Ticks on which the least distance changed by more than the motion.
+        turn: Ticks on which a pair of pieces that stayed in depth turned its normal by
+            over 60°.
+        force: Ticks on which the contacts' force changed by more than the motion
+            explains.
+        force_alone: Ticks with such a force on which neither of the above happened, nor
+            a normal of the deepest contact turned: the clustering's doing.
         largest_N: The largest change of the force beyond what the motion explains.
-        worst_tick: Where that was.
+        worst_tick: Tick of the largest change.
     """
 
     ticks: int = 0
@@ -76,7 +78,7 @@ def _speed(tick: Tick, radius_m: float) -> float:
 
 
 def _has_turned(last: Tick, now: Tick) -> bool:
-    """Whether a pair of pieces in depth on both ticks turned its normal."""
+    """Tells whether a pair of pieces in depth on both ticks turned its normal."""
     a, b = last.contacts, now.contacts
     before = {
         (p, q): n

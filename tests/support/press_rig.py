@@ -63,11 +63,11 @@ class Press:
         nhat_W: Outward normal there.
         push_W: Unit direction in which the tool comes.
         slide_W: Unit tangent along which it goes on, or zero.
-        R_WT: (3, 3) the tool's orientation.
-        p_TP: The tool's foremost point, in T, m.
-        speed_m_per_s: Of the handle.
+        R_WT: (3, 3) orientation of the tool.
+        p_TP: Foremost point of the tool, in T, m.
+        speed_m_per_s: Speed of the handle.
         stop_N: Coupling force at which a press stops.
-        stop_m: How far inside the surface it stops at the latest.
+        stop_m: Depth inside the surface at which it stops at the latest.
     """
 
     p_W: np.ndarray
@@ -97,14 +97,14 @@ MOTIONS = ("press", "oblique", "slide", "jab")
 def sample_presses(
     mesh: Mesh, tool: PressTool, motion: str, points: Iterable[int], seed: int
 ) -> list[Press]:
-    """Presses on points of a surface, spread evenly over its area.
+    """Returns presses on points of a surface, spread evenly over its area.
 
     Args:
         mesh: The surface.
-        tool: What is pressed.
+        tool: Tool that is pressed.
         motion: One of MOTIONS.
         points: Numbers of points; a number and a seed always mean the same press.
-        seed: Of the random points.
+        seed: Seed of the random points.
     """
     corners = mesh.vertices[mesh.triangles]
     area_vectors = (
@@ -146,7 +146,7 @@ def sample_presses(
 
 @dataclass(frozen=True)
 class Tick:
-    """What one tick saw and did."""
+    """The values of one tick."""
 
     phase: str  # "in", "slide", "hold", "out" or "away"
     q_WH: np.ndarray  # (7,)
@@ -218,9 +218,9 @@ def run_press(
 
 
 def move_handle(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
-    """The handle's poses: in, perhaps along the surface, hold, out, away.
+    """Yields the handle's poses: in, perhaps along the surface, hold, out, away.
 
-    Is sent the coupling's force after each, N.
+    It is sent the coupling's force after each, N.
     """
     step = press.speed_m_per_s * PERIOD_S
     travel, slid = 0.0, 0.0

@@ -20,9 +20,9 @@ class PressTool:
     """A tool in its frame T, with the directions in which it is pushed.
 
     Attributes:
-        mesh: Its surface.
-        core: Its pieces.
-        dynamics: Its mass and inertia.
+        mesh: Surface of the tool.
+        core: Pieces of the tool.
+        dynamics: Mass and inertia of the tool.
         pushes_T: (k, 3) unit directions; a press takes one of them.
     """
 
@@ -32,7 +32,7 @@ class PressTool:
     pushes_T: np.ndarray
 
     def probe(self, push: int) -> np.ndarray:
-        """The foremost vertex (3,) along a push, m."""
+        """Returns the foremost vertex (3,) along a push, m."""
         V = self.mesh.vertices
         return V[np.argmax(V @ self.pushes_T[push])]
 
@@ -41,9 +41,9 @@ def make_tool(mesh: Mesh, pushes_T: object, *, flat: bool = False) -> PressTool:
     """Cuts and weighs a tool.
 
     Args:
-        mesh: Its surface.
+        mesh: Surface of the tool.
         pushes_T: (k, 3) directions of any length.
-        flat: Every triangle is a piece of its own.
+        flat: Whether every triangle is a piece of its own.
     """
     core = (
         _core.assemble_surface_pieces(

@@ -1,4 +1,4 @@
-"""What a press did, judged by the solid's triangles and by plain mechanics."""
+"""The verdict on a press, by the solid's triangles and by plain mechanics."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ _LOOK_EVERY = 10
 
 @dataclass
 class Verdict:
-    """What a press showed.
+    """The outcome of a press.
 
     Attributes:
-        skipped: Why it tells nothing: no room for the tool, or no contact.
+        skipped: Reason why it tells nothing: no room for the tool, or no contact.
         lost_tick: First tick on which tool and solid overlapped and nothing pushed;
             -1 if none.
-        through: The tool's foremost point left the solid by the far side.
+        through: Whether the tool's foremost point left the solid by the far side.
         inward_tick: First tick with a contact that pushed into the surface; -1.
-        made_J: Most energy that the contact gave beyond what it had been given.
-        hooked_m: How far from the handle the tool was at the end, if there was room
-            for it there.
+        made_J: Largest energy that the contact gave beyond what it had been given.
+        hooked_m: Distance of the tool from the handle at the end, if there was room for
+            it there.
         depth_m: Largest depth of any contact.
-        shallow: Deepest contact at rest over how deep the innermost vertex was.
-        jumps: Where contacts and their force jumped, until the retreat.
-        finite: No NaN, no Inf.
-        made_tick: Until when most energy was made.
+        shallow: Deepest contact at rest over the depth of the innermost vertex.
+        jumps: Jumps of contacts and of their force, until the retreat.
+        finite: Whether there was neither NaN nor Inf.
+        made_tick: Tick until which most energy was made.
     """
 
     skipped: str = ""
@@ -94,12 +94,12 @@ def judge(
 
 
 def find_lost_tick(states: np.ndarray, forces: np.ndarray, overlap: Overlap) -> int:
-    """The first tick on which tool and solid overlap and nothing pushes; -1 if none.
+    """Returns the first tick on which tool and solid overlap and nothing pushes, or -1.
 
     Args:
         states: (n, 7) or (n, 13), pose of the tool first.
         forces: (n, 6), torque and force of contact on it, N·m and N.
-        overlap: Of tool and solid.
+        overlap: Overlap of tool and solid.
     """
     silent = np.flatnonzero(np.linalg.norm(forces[:, 3:], axis=1) < 1e-9)
     step = max(1, len(silent) // 100)
@@ -109,13 +109,13 @@ def find_lost_tick(states: np.ndarray, forces: np.ndarray, overlap: Overlap) -> 
 def is_through(
     press: Press, probe: np.ndarray, solid: Surface, spring_m: float
 ) -> bool:
-    """Whether the tool's foremost point left the solid by the far side.
+    """Tells whether the tool's foremost point left the solid by the far side.
 
     Args:
-        press: What was done.
+        press: Press that was done.
         probe: (n, 3) that point while the tool was pressed, m.
         solid: The surface.
-        spring_m: How deep the contact's spring lets the largest force press, m.
+        spring_m: Depth to which the largest force presses the contact's spring, m.
     """
     sunk_m = (probe[-1] - press.p_W) @ -press.nhat_W
     return bool(sunk_m > spring_m + _BELOW_SPRING_M and solid.is_pierced(probe[::8]))
@@ -124,7 +124,7 @@ def is_through(
 def _judge_normals(
     verdict: Verdict, ticks: list[Tick], solid: Surface, pieces: _core.ConvexPieces
 ) -> None:
-    """A contact pushes along its normal: out of the surface at the solid's feature.
+    """Checks that a contact pushes out of the surface at the solid's feature.
 
     The witness itself is inside where the contact is deep, and the nearest surface
     there may be a thin wall's other side.
@@ -154,7 +154,7 @@ def _judge_energy(
     forces: np.ndarray,
     gains: Gains,
 ) -> None:
-    """A spring gives back what it got: work plus what it holds never rises."""
+    """Checks that a spring gives back what it got: work plus store never rises."""
     power = np.einsum("ij,ij->i", forces[:-1], states[1:, 7:])
     work = np.concatenate([[0.0], np.cumsum(power) * PERIOD_S])
     held = [

@@ -19,15 +19,15 @@ class ReportedPair:
     """A pair that a thread reports.
 
     Attributes:
-        name: What it is.
-        link: The thread.
-        reported: What the thread says the library did.
+        name: Name of the pair.
+        link: Link to the thread.
+        reported: Behavior of the library that the thread reports.
         A: (n, 3) vertices of the one body, m.
         B: (m, 3) vertices of the other, m.
         X_WA: (4, 4) pose of A.
         X_WB: (4, 4) pose of B.
         known_m: Signed distance by the thread or by a closed form, m, if there is one.
-        known_to_m: How exactly `known_m` is known, m.
+        known_to_m: Accuracy of `known_m`, m.
     """
 
     name: str

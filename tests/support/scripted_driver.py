@@ -1,4 +1,4 @@
-"""A driver whose arm does what a test says, as a program.
+"""A driver whose arm moves as a test says, as a program.
 
     python tests/support/scripted_driver.py JSON_FILE TROUBLE
 
@@ -29,7 +29,7 @@ class ScriptedArm:
 
     @property
     def in_trouble(self):
-        """Whether it is in trouble now."""
+        """Tells whether it is in trouble now."""
         return FIRST <= self.ticks < LAST
 
     def start(self):

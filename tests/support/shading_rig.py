@@ -25,13 +25,13 @@ def core_of(body: trimesh.Trimesh, method: Method = "surface") -> _core.ConvexPi
 def shading(
     tool: _core.ConvexPieces, body: _core.ConvexPieces, crease: float = CREASE
 ) -> _core.ContactShading:
-    """Of both bodies, with edges sharp from the crease angle (rad) on."""
+    """Returns the shading of both bodies, sharp from the crease angle (rad) on."""
     surfaces = [_core.SurfaceShading(item, crease) for item in (tool, body)]
     return _core.ContactShading(surfaces[0], surfaces[1:])
 
 
 def angles(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Between the rows of both, degrees."""
+    """Returns the angles between the rows of both, degrees."""
     return np.degrees(
         np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), (u * v).sum(axis=-1))
     )
@@ -49,7 +49,7 @@ def directions(
     poses: np.ndarray,
     crease: float = CREASE,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Of the force at each pose, (n, 3) unit: without shading and with it.
+    """Returns the force's direction at each pose, (n, 3), without and with shading.
 
     Contacts weigh what they are below the tolerance, as elastic forces do.
     """

@@ -1,4 +1,4 @@
-"""Reads a built site: what its pages link to, load, and say."""
+"""Reads a built site: the links, loads and text of its pages."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class Page:
     """A page.
 
     Attributes:
-        path: Its file.
-        text: As it was written, tags and all.
-        links: What it links to.
-        loads: What a browser loads with it.
+        path: File of the page.
+        text: Text as it was written, tags and all.
+        links: Addresses that it links to.
+        loads: Addresses that a browser loads with it.
         anchors: The ids in it.
     """
 
@@ -64,5 +64,5 @@ def read_site(folder: Path) -> dict[Path, Page]:
 
 
 def is_elsewhere(address: str) -> bool:
-    """Whether an address is on another host, or does not name a file."""
+    """Tells whether an address is on another host, or does not name a file."""
     return bool(urlsplit(address).scheme or urlsplit(address).netloc)

@@ -1,4 +1,4 @@
-"""The sentence that ends a test run: what it did not check, and what would."""
+"""The sentence that ends a test run: the tests it skipped, and the remedies."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def make_slide_tools() -> dict[str, _core.ConvexPieces]:
 
 
 def cut(mesh: Mesh, piece_of_triangle: object) -> _core.ConvexPieces:
-    """A mesh in the pieces that one chooses: whatever numbers, one for a piece."""
+    """Returns a mesh in chosen pieces: any numbers, one for a piece."""
     _, labels = np.unique(np.asarray(piece_of_triangle), return_inverse=True)
     return _core.assemble_surface_pieces(
         mesh.vertices, mesh.triangles, labels.astype(np.int32)
@@ -54,12 +54,12 @@ def slide(
     """Comes down onto a path along its normal, then follows it.
 
     Args:
-        tool: Of one or more pieces.
-        solid: Fixed at the world's origin.
-        path_W: (n, 3) the tool's origin, tick by tick, m.
-        nhat_W: (3,) outward where the path begins.
-        R_WT: (3, 3) the tool's orientation, held.
-        tolerance_m: Of the contact query.
+        tool: Tool of one or more pieces.
+        solid: Solid that is fixed at the world's origin.
+        path_W: (n, 3) origin of the tool, tick by tick, m.
+        nhat_W: (3,) outward normal where the path begins.
+        R_WT: (3, 3) orientation of the tool, held.
+        tolerance_m: Tolerance of the contact query, m.
 
     Yields:
         The contacts at each point of the path.
@@ -84,8 +84,8 @@ class Felt:
     """The force of a tick.
 
     Attributes:
-        force_W: (3,) N, on the tool, of all clusters together.
-        clusters: How many there were.
+        force_W: (3,) force on the tool, of all clusters together, N.
+        clusters: Number of clusters.
     """
 
     force_W: np.ndarray
@@ -95,7 +95,7 @@ class Felt:
 def feel(
     contacts: _core.ContactSet, method: str, gains: Gains, v_WT: np.ndarray
 ) -> Felt:
-    """What the project's chain makes of contacts, for a tool that moves at v_WT."""
+    """Returns the force of the project's chain for a tool that moves at v_WT."""
     clusters = cluster(contacts, method, gains.tolerance_m, gains.delta_m)
     F_To_W = _core.penalty_force(
         clusters,
@@ -110,5 +110,5 @@ def feel(
 
 
 def velocity(path_W: np.ndarray) -> np.ndarray:
-    """Of a straight path, (3,), m/s."""
+    """Returns the velocity of a straight path, (3,), m/s."""
     return (path_W[1] - path_W[0]) / PERIOD_S

@@ -16,7 +16,7 @@ TOP_M = 0.01  # height of both faces
 
 
 def triangles_of_top(mesh: Mesh) -> np.ndarray:
-    """Which triangles (m,) lie in the plane z = TOP_M."""
+    """Returns which triangles (m,) lie in the plane z = TOP_M."""
     z = mesh.vertices[mesh.triangles][:, :, 2]
     return np.abs(z - TOP_M).max(axis=1) < 1e-9
 
@@ -35,7 +35,7 @@ def fifty_pieces() -> _core.ConvexPieces:
 
 
 def fifty_pieces_path(height_m: float) -> np.ndarray:
-    """Over 12 of them, askew: the points (n, 3) of a tool at a height, m."""
+    """Returns the points (n, 3) of a tool over 12 of them, askew, at a height, m."""
     z = TOP_M + height_m
     return line([0.02, 0.02, z], [0.08, 0.031, z])
 
@@ -51,6 +51,6 @@ def pitted_block() -> _core.ConvexPieces:
 
 
 def pitted_block_path(height_m: float) -> np.ndarray:
-    """Between two rows of pits, no lowest feature of a small tool over one."""
+    """Returns a path between rows of pits, a small tool's lowest feature over none."""
     z = TOP_M + height_m
     return line([0.008, 0.0202, z], [0.047, 0.0198, z])

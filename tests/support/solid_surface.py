@@ -13,7 +13,7 @@ from drake_haptics.geometry.mesh.topology import winding_numbers
 
 
 def rotation_of(q: np.ndarray) -> np.ndarray:
-    """(3, 3) of a pose (7,) [qw qx qy qz x y z]."""
+    """Returns the rotation (3, 3) of a pose (7,) [qw qx qy qz x y z]."""
     return Rotation.from_quat([*q[1:4], q[0]]).as_matrix()
 
 
@@ -29,7 +29,7 @@ class Surface:
         self.normals = n / np.linalg.norm(n, axis=1, keepdims=True)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        """Whether each of the points (n, 3) is inside."""
+        """Tells whether each of the points (n, 3) is inside."""
         return winding_numbers(points, self.mesh.vertices, self.mesh.triangles) > 0.5
 
     def distances(self, p: np.ndarray) -> np.ndarray:
@@ -47,7 +47,7 @@ class Surface:
         return np.where(inside, plane, rim)
 
     def inner_depth(self, points: np.ndarray) -> float:
-        """How far the innermost of points (n, 3) is from the surface around it, m."""
+        """Returns the depth of the innermost of points (n, 3), m."""
         inside = self.holds(points)
         return max((self.distances(p).min() for p in points[inside]), default=0.0)
 
@@ -57,7 +57,7 @@ class Surface:
         return float((self.normals[distances < distances.min() + 1e-5] @ n).max())
 
     def crossings(self, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Where a polyline (n, 3) meets the surface, in order.
+        """Returns where a polyline (n, 3) meets the surface, in order.
 
         Returns:
             The points (k, 3) and the outward normals (k, 3) there.
@@ -86,7 +86,7 @@ class Surface:
         return np.reshape(points, (-1, 3)), np.reshape(normals, (-1, 3))
 
     def is_pierced(self, path: np.ndarray) -> bool:
-        """Whether a polyline from outside came out of the far side, straight on.
+        """Tells whether a polyline from outside came out of the far side, straight on.
 
         A way around an edge also leaves by an opposed face, but is longer than its
         chord or runs along the surface.
@@ -110,12 +110,12 @@ class Overlap:
     """Tells whether a posed tool and a solid share points."""
 
     def __init__(self, tool: Mesh, solid: Surface):
-        """Takes both."""
+        """Takes the tool and the solid."""
         self._tool, self._solid = tool, solid
         self._models = _triangle_model(tool), _triangle_model(solid.mesh)
 
     def __call__(self, q_WT: np.ndarray) -> bool:
-        """At the tool's pose (7,): surfaces cross, or the tool is inside."""
+        """Tells whether, at a pose (7,), surfaces cross or the tool is inside."""
         R, p = rotation_of(q_WT), q_WT[4:7]
         result = coal.CollisionResult()
         coal.collide(

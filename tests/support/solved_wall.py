@@ -43,12 +43,12 @@ _AT_REST = np.eye(7)[0]
 
 @dataclass(frozen=True)
 class Solver:
-    """Who solves contact, and who answers the device.
+    """A way to solve contact and to answer the device.
 
     Attributes:
-        name: In tables.
+        name: Name in tables.
         servo_hz: Rate of the device and of its answers.
-        solved_hz: How often contact is solved and the tool stepped.
+        solved_hz: Rate at which contact is solved and the tool stepped.
     """
 
     name: str
@@ -129,11 +129,11 @@ def simulate(
     then contact is solved for it.
 
     Args:
-        solver: Who does what.
-        stiffness: Of the coupling, N/m.
+        solver: Way to solve and answer.
+        stiffness: Stiffness of the coupling, N/m.
         start: Height and speed of the handle, m and m/s; the tool is where it is, or
             on the plate.
-        duration_s: Of the run, s.
+        duration_s: Duration of the run, s.
         pressed_N: Force that presses the handle down, N.
         is_late: Whether contact is not solved in time at a sample.
 
@@ -167,11 +167,11 @@ def _solve(tool: ServoTool, X: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, .
 
 
 def find_largest_stiffness(is_stable: Callable[[float], bool], near: float) -> float:
-    """Returns the stiffness from which it is not stable, to half a percent, N/m.
+    """Returns the stiffness from which it is unstable, to half a percent, N/m.
 
     Args:
-        is_stable: Whether one is.
-        near: It is sought between a third of this and thrice as much, N/m.
+        is_stable: Function that tells whether a stiffness is stable.
+        near: Stiffness to search around, from a third of it to three times it, N/m.
     """
     low, high = near / 3.0, near * 3.0
     while high / low > 1.005:
@@ -240,7 +240,7 @@ class _PressedSlider(Slider):
 
 
 class _LateSlider(Diagram):
-    """The same behind a link that takes a sample."""
+    """The pressed handle behind a link that takes a sample."""
 
     def __init__(self, period_s: float):
         super().__init__()

@@ -87,7 +87,7 @@ class StructDriver:
     """A driver's socket, stepped by hand. Use it as a context manager.
 
     Attributes:
-        state: What is sent next; `sequence` rises by itself.
+        state: State that is sent next; `sequence` rises by itself.
     """
 
     host: str = "127.0.0.1"

@@ -62,7 +62,7 @@ class State:
 
 
 def is_whole(packet):
-    """Whether a packet's checksum is that of its bytes."""
+    """Tells whether a packet's checksum is that of its bytes."""
     return packet[-4:] == struct.pack("<I", zlib.crc32(packet[:-4]))
 
 
@@ -111,13 +111,13 @@ class StructHost:
     """One end of the link; every call sends or takes what there is, without a thread.
 
     Args:
-        port: Of the device, or of a relay to it.
-        session: Of this host's run.
-        sequence: Of its first command.
+        port: Port of the device, or of a relay to it.
+        session: Number of this host's run.
+        sequence: Number of its first command.
 
     Attributes:
-        state: The newest that has come; None before the first.
-        damaged: How many packets had a wrong checksum.
+        state: Newest state that has come; None before the first.
+        damaged: Number of packets that had a wrong checksum.
     """
 
     def __init__(self, port, *, session=None, sequence=0):
@@ -172,9 +172,9 @@ class StructHost:
         """Answers states with commands until a state is as wanted; returns that state.
 
         Args:
-            until: Says of a state whether to end.
-            bound_s: Fails after as long.
-            command: As for `send`.
+            until: Function of a state that tells whether to end.
+            bound_s: Time after which it fails, s.
+            command: Arguments of `send`.
         """
         end_s = time.monotonic() + bound_s
         while time.monotonic() < end_s:
@@ -194,8 +194,8 @@ class StructHost:
         """Takes a device to full force, from wherever it is.
 
         Args:
-            force_z: The force, N, within the device's limit.
-            more: As for `send`.
+            force_z: Force, N, within the device's limit.
+            more: Arguments of `send`.
 
         Returns:
             The first state there.

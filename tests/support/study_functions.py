@@ -41,8 +41,8 @@ class Journal:
     """Writes every task that it computes to a file, as text; some tasks are odd.
 
     Args:
-        path: Of the file.
-        seconds: How long a task takes.
+        path: Path of the file.
+        seconds: Duration of a task, s.
     """
 
     path: str

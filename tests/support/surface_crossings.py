@@ -1,4 +1,4 @@
-"""Does a triangle surface cross itself? By plain algebra, edge by edge."""
+"""Tells whether a triangle surface crosses itself, by plain algebra, edge by edge."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ def crossing_edges(
     """Pairs (index of an edge, triangle) that cross and share no vertex.
 
     Args:
-        vertices: (n, 3).
-        triangles: (m, 3).
-        edges: (k, 2) vertices of the edges to look at; all without it.
+        vertices: (n, 3) vertices.
+        triangles: (m, 3) vertex indices.
+        edges: (k, 2) vertices of the edges to check; all without it.
     """
     if edges is None:
         around = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])
@@ -35,7 +35,7 @@ def crossing_edges(
 
 
 def _crosses(p: np.ndarray, q: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Whether the segment pq meets each of the triangles (k, 3, 3)."""
+    """Tells whether the segment pq meets each of the triangles (k, 3, 3)."""
     a, b, c = np.swapaxes(corners, 0, 1)
     # p + t (q - p) = a + u (b - a) + v (c - a), by Cramer's rule.
     d, e, f = q - p, b - a, c - a

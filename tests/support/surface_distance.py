@@ -1,10 +1,10 @@
-"""Where points are with respect to a surface, for slivers and needles too."""
+"""Distances of points to a surface, for slivers and needles too."""
 
 import numpy as np
 
 
 def winding_numbers(points, V, F):
-    """How often the surface winds about each point (van Oosterom, Strackee)."""
+    """Returns how often the surface winds about each point (van Oosterom, Strackee)."""
     result = []
     for p in points:
         a, b, c = (V[F[:, k]] - p for k in range(3))

@@ -49,12 +49,12 @@ _MODULUS_PA, _DISSIPATION_S_PER_M = 1e8, 1e-3
 
 @dataclass(frozen=True)
 class Turning:
-    """What a bolt did, step by step.
+    """The motion of a bolt, step by step.
 
     Attributes:
         turns: (n,) turns of the bolt.
-        z_m: (n,) its height, m.
-        F_Bo_W: (n, 6) wrench of the coupling on it at its frame, N·m and N.
+        z_m: (n,) height of the bolt, m.
+        F_Bo_W: (n, 6) wrench of the coupling on the bolt at its frame, N·m and N.
         step_s: Median time that a step of 1 ms took, s.
     """
 

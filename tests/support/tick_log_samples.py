@@ -1,4 +1,4 @@
-"""Small logs for tests, and what is in them."""
+"""Small logs for tests, and their contents."""
 
 import numpy as np
 

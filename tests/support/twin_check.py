@@ -104,13 +104,13 @@ def check_twin(
     """Checks values and all derivatives of a system's twin at a point.
 
     Args:
-        system: Not part of a diagram.
+        system: System that is not part of a diagram.
         inputs: Vector by name of the input.
-        continuous: Its continuous state.
-        state: Its discrete state, all groups.
+        continuous: Continuous state of the system.
+        state: Discrete state of the system, all groups.
         constants: Entries of the state that are not varied.
-        time_s: s.
-        step: Of the differences.
+        time_s: Time, s.
+        step: Step of the differences.
         rtol: Largest error of an entry, relative to the largest derivative of its
             row, or to the row's value.
         floor: Rows smaller than this count as if they were this large.

@@ -62,9 +62,9 @@ class CoupledArm:
     """An arm on a coupling to a tool a little beside its handle.
 
     Args:
-        arm: What `make_arm` returned.
+        arm: Arm from `make_arm`.
         gains: K, B, K_r and B_r of the coupling.
-        p_offset: From the handle to the tool, (3,) m.
+        p_offset: Offset from the handle to the tool, (3,) m.
     """
 
     def __init__(self, arm, gains, p_offset):

@@ -1,4 +1,4 @@
-"""A visualizer that draws into a page that only keeps what it is sent."""
+"""A visualizer that draws into a page that only keeps its messages."""
 
 # ruff: noqa: D102 - the methods of the fake are documented by Drake.
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
 
 
 class FakeMeshcat:
-    """Keeps what it is told, like a browser, and what it was told when."""
+    """Keeps the messages that it gets, like a browser, and when they came."""
 
     def __init__(self, connections=1):
         self.connections = connections
@@ -123,7 +123,7 @@ def make_visualizer(meshcat, objects=(), *, tick_s=1 / 1024, **options):
 
 
 def make_picture(meshcat):
-    """What a visualizer draws with."""
+    """Returns the picture that a visualizer draws with."""
     limits = {"max_force_N": MAX_FORCE_N, "max_torque_Nm": MAX_TORQUE_NM}
     return HapticPicture(
         meshcat, make_mesh(), [], RigidTransform(), **limits, has_friction=False

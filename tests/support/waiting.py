@@ -1,4 +1,4 @@
-"""Waits for what others do, as long as a busy machine may need."""
+"""Waits for other threads and processes, as long as a busy machine may need."""
 
 import time
 from collections.abc import Callable

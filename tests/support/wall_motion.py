@@ -61,7 +61,7 @@ def measure_growth(wall, ticks):
 def find_simulated_limit(wall, near):
     """Simulates close to both sides, and returns the stiffness that neither grows.
 
-    Of the logarithms of the growth, which are linear in K to second order.
+    It is found from the logarithms of the growth, linear in K to second order.
     """
     K = near * np.array([0.998, 1.002])
     growth = [math.log(measure_growth(replace(wall, stiffness=k), 20000)) for k in K]

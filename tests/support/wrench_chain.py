@@ -38,11 +38,11 @@ class Body:
     """A body in a scenario.
 
     Attributes:
-        shape: Its pieces, in its frame B.
-        X_SB: (4, 4) pose.
+        shape: Pieces of the body, in its frame B.
+        X_SB: (4, 4) pose of the body.
         V_SB: (6,) spatial velocity of its origin, rad/s and m/s.
-        stiffness_N_per_m: Of an object; nothing for the tool.
-        damping_Ns_per_m: The same.
+        stiffness_N_per_m: Stiffness of an object; nothing for the tool.
+        damping_Ns_per_m: Damping of an object; nothing for the tool.
     """
 
     shape: _core.ConvexPieces
@@ -66,7 +66,7 @@ def place(
 
 
 def join_hulls(*bodies: _core.ConvexPieces) -> _core.ConvexPieces:
-    """Convex solids as one body."""
+    """Returns convex solids as one body."""
     starts = np.cumsum([0, *(len(b.vertices) for b in bodies)])[:-1]
     triangles = np.vstack(
         [b.triangles + s for b, s in zip(bodies, starts, strict=True)]
@@ -80,13 +80,13 @@ def join_hulls(*bodies: _core.ConvexPieces) -> _core.ConvexPieces:
 
 @dataclass(frozen=True)
 class Wrenches:
-    """What the chain answers, in S: [torque; force], N·m and N.
+    """The chain's answers, in S: [torque; force], N·m and N.
 
     Attributes:
-        tool: (6,) on the tool at its origin.
-        objects: (m, 6) on each object at its origin.
-        clusters: What was answered, in the world.
-        answer: As the core gives it, in the world.
+        tool: (6,) wrench on the tool at its origin.
+        objects: (m, 6) wrenches on each object at its origin.
+        clusters: Clusters that were answered, in the world.
+        answer: Answer of the core, in the world.
     """
 
     tool: np.ndarray
@@ -98,11 +98,11 @@ class Wrenches:
 def run_chain(
     tool: Body, objects: Sequence[Body], method: str, delta_m: float = DELTA_M
 ) -> Wrenches:
-    """Query, clusters and penalty force, from nothing known before.
+    """Runs query, clusters and penalty force, from nothing known before.
 
     Args:
         tool: The tool.
-        objects: What it may meet.
+        objects: Objects that it may meet.
         method: "octree" or "shared".
         delta_m: Cluster size of the octree, m.
     """
@@ -134,20 +134,20 @@ def run_chain(
 def cluster(
     contacts: _core.ContactSet, method: str, tolerance_m: float, delta_m: float
 ) -> _core.ClusterSet:
-    """The clusters of a method."""
+    """Returns the clusters of a method."""
     if method == "octree":
         return _core.cluster_contacts(contacts, delta_m, tolerance_m)
     return _core.share_stiffness(contacts, tolerance_m)
 
 
 def turned(R: np.ndarray, wrench: np.ndarray) -> np.ndarray:
-    """Both halves of (..., 6) in another frame."""
+    """Returns both halves of (..., 6) in another frame."""
     halves = np.asarray(wrench).reshape(*np.shape(wrench)[:-1], 2, 3)
     return (halves @ R.T).reshape(np.shape(wrench))
 
 
 def wrench_at(p: object, f: object) -> np.ndarray:
-    """A force (3,) at a point (3,) as a wrench (6,) about the origin."""
+    """Returns a force (3,) at a point (3,) as a wrench (6,) about the origin."""
     p, f = np.asarray(p, float), np.asarray(f, float)
     return np.concatenate([np.cross(p, f), f])
 
@@ -157,12 +157,12 @@ class Case:
     """A wrench beside its closed form.
 
     Attributes:
-        scenario: What touches what.
+        scenario: Names of the bodies that touch.
         formula: The closed form, in words of the paper.
         equations: Numbers of the paper's equations that it tests.
-        method: Of clustering.
-        expected: (6,) or (..., 6) [torque; force], N·m and N.
-        measured: The same of the chain.
+        method: Method of clustering.
+        expected: (6,) or (..., 6) expected [torque; force], N·m and N.
+        measured: The chain's [torque; force], of the same shape.
         arm_m: Length that makes torques comparable with forces.
         bound: Largest relative error that the formula allows; round-off where it is
             exact.
@@ -179,7 +179,7 @@ class Case:
 
     @property
     def error(self) -> float:
-        """The larger of |Δf| / |f| and |Δτ| / (|f| arm), |f| the largest expected."""
+        """Larger of |Δf| / |f| and |Δτ| / (|f| arm), |f| the largest expected."""
         expected = np.reshape(self.expected, (-1, 6))
         off = np.reshape(self.measured, (-1, 6)) - expected
         scale = np.linalg.norm(expected[:, 3:], axis=1).max()

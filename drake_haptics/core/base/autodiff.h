@@ -9,9 +9,9 @@
 
 namespace drake_haptics {
 
-/// A number with its derivatives by any number of variables. What is
-/// differentiated in the core is a template over the scalar, of double on the
-/// tick and of this for gradients: one derivation serves both.
+/// A number with its derivatives with respect to any number of variables. Code
+/// to differentiate is a template over the scalar, which is double in a tick
+/// and AutoDiff for gradients: one derivation serves both.
 using AutoDiff = Eigen::AutoDiffScalar<Eigen::VectorXd>;
 
 template <typename T>
@@ -27,7 +27,7 @@ using Vec6Of = Eigen::Matrix<T, 6, 1>;
 template <typename T>
 using Mat6Of = Eigen::Matrix<T, 6, 6>;
 
-/// The value alone, on which decisions are made.
+/// The value without derivatives, on which branches depend.
 inline double ValueOf(double x) { return x; }
 inline double ValueOf(const AutoDiff& x) { return x.value(); }
 
@@ -39,7 +39,7 @@ auto ValuesOf(const Eigen::MatrixBase<Derived>& matrix) {
       .eval();
 }
 
-/// |v|, with derivatives that are zero at v = 0, where it has a kink.
+/// |v|, with zero derivatives at its kink v = 0.
 template <typename T>
 T LengthOf(const Eigen::Matrix<T, 3, 1>& v) {
   using std::sqrt;
@@ -48,7 +48,8 @@ T LengthOf(const Eigen::Matrix<T, 3, 1>& v) {
   return sqrt(square);
 }
 
-/// Numbers with their derivatives by D variables: value (n), gradient (n, D).
+/// n numbers with their derivatives with respect to D variables: value (n),
+/// gradient (n, D).
 struct AutoDiffVector {
   Eigen::VectorXd value;
   Eigen::MatrixXd gradient;
@@ -77,8 +78,8 @@ Eigen::Matrix<AutoDiff, Size, 1> ToScalars(const AutoDiffVector& vector,
   return scalars;
 }
 
-/// Returns the number of variables D, that of all vectors.
-/// @throws std::invalid_argument if it is not.
+/// Returns the number of variables D that all vectors share.
+/// @throws std::invalid_argument if they differ.
 template <typename... Vectors>
 Eigen::Index CommonNumDerivatives(const AutoDiffVector& first,
                                   const Vectors&... others) {
@@ -90,14 +91,14 @@ Eigen::Index CommonNumDerivatives(const AutoDiffVector& first,
   return num_derivatives;
 }
 
-/// Constants, which have no derivatives, get those that are zero.
+/// Returns values and gradients. Constants get zero derivatives.
 template <typename Derived>
 AutoDiffVector ToAutoDiffVector(const Eigen::MatrixBase<Derived>& scalars,
                                 Eigen::Index num_derivatives) {
   AutoDiffVector vector{ValuesOf(scalars),
                         Eigen::MatrixXd::Zero(scalars.size(), num_derivatives)};
   for (Eigen::Index i = 0; i < scalars.size(); ++i) {
-    const AutoDiff& scalar = scalars[i];  // a copy where that is an expression
+    const AutoDiff& scalar = scalars[i];  // a copy if it is an expression
     const Eigen::VectorXd& gradient = scalar.derivatives();
     if (gradient.size() > 0) vector.gradient.row(i) = gradient.transpose();
   }

@@ -5,11 +5,11 @@
 
 namespace drake_haptics {
 
-/// When each of many items wants to be looked at again. A tree of minima: what
-/// is not due costs nothing.
+/// Times at which items are due, as a tree of minima: items that are not due
+/// cost nothing.
 class DeadlineTree {
  public:
-  /// All items are due.
+  /// Starts with all items due.
   explicit DeadlineTree(int count);
 
   void Set(int item, double time);
@@ -26,7 +26,7 @@ class DeadlineTree {
   void Collect(int node, double time, std::vector<int>* due) const;
 
   int leaves_;                 // a power of two
-  std::vector<double> times_;  // of node i: the earliest of 2 i and 2 i + 1
+  std::vector<double> times_;  // node i: the minimum of nodes 2 i and 2 i + 1
 };
 
 }  // namespace drake_haptics

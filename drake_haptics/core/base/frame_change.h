@@ -4,8 +4,8 @@
 
 namespace drake_haptics {
 
-/// Tells in a frame A what is given in a frame B that does not move in it, and
-/// wrenches the other way. Spatial vectors stay at their point.
+/// Changes motions from a frame B to a frame A in which B is fixed, and
+/// wrenches from A to B. Spatial vectors keep their points.
 class FrameChange {
  public:
   /// @param q_AB pose of B in A.
@@ -13,7 +13,7 @@ class FrameChange {
   explicit FrameChange(const PoseVector& q_AB)
       : X_AB_(PoseFromVector(q_AB, "X_AB")), q_AB_(QuaternionOf(q_AB)) {}
 
-  /// [X_AH; V_AH] of [X_BH; V_BH]. A quaternion without a norm stays so.
+  /// Returns [X_AH; V_AH] for [X_BH; V_BH]. The quaternion keeps its norm.
   Eigen::Matrix<double, 13, 1> ChangeMotion(const PoseVector& q_BH,
                                             const Vec6& V_BH) const {
     const Eigen::Quaterniond turn =
@@ -24,7 +24,7 @@ class FrameChange {
     return motion;
   }
 
-  /// A spatial vector in B.
+  /// Expresses a spatial vector in B.
   Vec6 ChangeBack(const Vec6& F_A) const {
     Vec6 F_B;
     F_B << X_AB_.R.transpose() * F_A.head<3>(),
@@ -32,7 +32,7 @@ class FrameChange {
     return F_B;
   }
 
-  /// The slope of a spatial vector by a spatial motion in B.
+  /// Expresses in B the slope of a spatial vector with respect to a motion.
   Mat6 ChangeBack(const Mat6& K_A) const {
     Mat6 K_B;
     for (int i = 0; i < 6; i += 3) {

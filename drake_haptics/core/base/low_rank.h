@@ -5,15 +5,16 @@
 
 namespace drake_haptics {
 
-/// The features Φ, a column for each of `count` things, with which
-/// K_ab = φ_aᵀ φ_b to within `tolerance`. Cholesky's factor in the order in
-/// which what is left of the diagonal is largest (Harbrecht, Peters and
-/// Schneider 2012): it ends when all of that is within the tolerance. What is
-/// left of K is positive semidefinite, so that its other entries are too.
-/// Things that are nearly alike take few features however many they are; the
-/// time grows with the count and the square of the features.
-/// @param diagonal of K, the same for all.
-/// @param entry K_ab of a and b, positive semidefinite.
+/// Returns the features Φ, with a column φ for each of `count` items, such that
+/// K_ab = φ_aᵀ φ_b to within `tolerance`. This is Cholesky's factorization with
+/// the largest remaining diagonal entry as pivot (Harbrecht, Peters and
+/// Schneider 2012). It ends when the remaining diagonal is within the
+/// tolerance. The rest of K is positive semidefinite, so that its other entries
+/// are too. Similar items need few features however many they are; the time
+/// grows with the count and the square of the number of features.
+/// @param diagonal diagonal entry of K, the same for all items.
+/// @param entry function of a and b that returns K_ab; K is positive
+///     semidefinite.
 template <typename Entry>
 Eigen::MatrixXd FindFeatures(Eigen::Index count, double diagonal,
                              double tolerance, const Entry& entry) {

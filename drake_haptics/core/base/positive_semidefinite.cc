@@ -6,12 +6,12 @@
 namespace drake_haptics {
 namespace {
 
-// Below this part of the largest entry a difference is round-off.
+// A difference below this share of the largest entry is round-off.
 constexpr double kRoundOff = 1e-9;
-// An eigenvalue below zero by this part of it is that of a singular matrix.
+// A negative eigenvalue within this share of that entry counts as zero.
 constexpr double kSingular = 1e-13;
 
-// By a Cholesky decomposition, which costs a fraction of the eigenvalues.
+// A Cholesky decomposition costs a fraction of the eigenvalues.
 bool IsPassive(const Mat6& symmetric, double size) {
   const Mat6 lifted = symmetric + kSingular * size * Mat6::Identity();
   return lifted.llt().info() == Eigen::Success;

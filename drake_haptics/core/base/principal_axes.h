@@ -6,16 +6,16 @@
 
 namespace drake_haptics {
 
-/// 1 / q, with q a function that is linear in parts.
+/// The value 1 / q of a piecewise linear function q.
 template <typename T>
 struct Reciprocal {
   T value;
-  double slope_of_q;  ///< what q changes by with its argument
+  double slope_of_q;  ///< derivative of q
 };
 
-/// A symmetric matrix in its principal axes, the least eigenvalue first. In
-/// axes that are right for the values, entries off the diagonal change the
-/// eigenvalues in second order only.
+/// A symmetric matrix in its principal axes, smallest eigenvalue first. The
+/// axes diagonalize the values, so off-diagonal derivatives change the
+/// eigenvalues only to second order.
 template <typename T>
 class PrincipalAxes {
  public:
@@ -26,8 +26,8 @@ class PrincipalAxes {
 
   T eigenvalue(int i) const { return in_axes_(i, i); }
 
-  /// The symmetric matrix with f of each eigenvalue in its place; `f` returns a
-  /// Reciprocal. Its entries off the diagonal change with those of the matrix
+  /// Returns the symmetric matrix in which f replaces each eigenvalue; `f`
+  /// returns a Reciprocal. The derivatives of off-diagonal entries are scaled
   /// by the divided difference of f (Daleckii and Krein).
   template <typename Function>
   Eigen::Matrix<T, 2, 2> Map(const Function& f) const {
@@ -39,7 +39,7 @@ class PrincipalAxes {
   }
 
  private:
-  // (f(b) − f(a)) / (b − a) of the eigenvalues a and b, which may be one.
+  // (f(b) − f(a)) / (b − a) of the eigenvalues a and b, which may be equal.
   double DividedDifference(const Reciprocal<T>& f_a,
                            const Reciprocal<T>& f_b) const {
     const double value_a = ValueOf(f_a.value), value_b = ValueOf(f_b.value);
@@ -58,7 +58,7 @@ class PrincipalAxes {
   Eigen::Matrix<T, 2, 2> in_axes_;
 };
 
-/// Without derivatives.
+/// Specialization without derivatives.
 template <>
 class PrincipalAxes<double> {
  public:

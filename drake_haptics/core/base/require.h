@@ -1,6 +1,6 @@
 #pragma once
 
-/// Bounds of numbers that people give. Messages say name, bound and value.
+/// Checks of user input. Messages contain the name, the bound and the value.
 namespace drake_haptics {
 
 /// @throws std::invalid_argument unless the value is finite and above zero.

@@ -10,7 +10,7 @@ template <typename T>
 Eigen::Quaternion<T> RotationExp(const Vec3Of<T>& r) {
   using std::cos, std::sin, std::sqrt;
   const T square = r.squaredNorm();
-  // By their series where the quotient loses digits, and the root its slope.
+  // Series where the quotient loses digits, and the root its derivative.
   if (ValueOf(square) < 1e-8) {
     const T s = 0.5 - square / 48.0;
     return {T(1.0 - square / 8.0), T(s * r.x()), T(s * r.y()), T(s * r.z())};
@@ -23,7 +23,7 @@ Eigen::Quaternion<T> RotationExp(const Vec3Of<T>& r) {
 template <typename T>
 Vec3Of<T> RotationLog(const Eigen::Quaternion<T>& q) {
   using std::atan2, std::sqrt;
-  // q and −q are the same rotation; take the one with the short way round.
+  // q and −q are the same rotation; take the shorter way round.
   const double sign = ValueOf(q.w()) < 0 ? -1.0 : 1.0;
   const Vec3Of<T> v = sign * q.vec();
   const T w = sign * q.w();

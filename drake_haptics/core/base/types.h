@@ -35,7 +35,7 @@ inline Pose RelativePose(const Pose& X_WA, const Pose& X_WB) {
   return {X_WA.R.transpose() * X_WB.R, X_WA.R.transpose() * (X_WB.p - X_WA.p)};
 }
 
-/// What a feature of a polytope is.
+/// Kind of a feature of a polytope.
 enum class FeatureKind : std::int32_t { kVertex = 0, kEdge = 1, kFacet = 2 };
 
 /// A vertex, edge or facet of a polytope as one integer: index * 4 + kind.

@@ -9,7 +9,7 @@ namespace drake_haptics {
 /// Fischer 1964).
 class UnionFind {
  public:
-  /// Each number by itself.
+  /// Starts with each number in a set of its own.
   explicit UnionFind(int count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
@@ -19,7 +19,7 @@ class UnionFind {
     return i;
   }
 
-  /// Joins the set of `i` to that of `to`, whose root stays.
+  /// Merges the set of `i` into the set of `to`, which keeps its root.
   void Join(int i, int to) { parent_[Root(i)] = Root(to); }
 
  private:

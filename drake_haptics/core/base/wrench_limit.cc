@@ -5,13 +5,13 @@
 namespace drake_haptics {
 namespace {
 
-// The norm of numbers of any size, rounded once, as Python's math.hypot; NaN or
-// infinite if one is.
+// Norm of numbers of any size, rounded once like Python's math.hypot; NaN or
+// infinite if a number is.
 double Norm(const Vec3& v) {
   const double size = v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   if (size == 0 || !std::isfinite(size)) return size;
   const int exponent = std::ilogb(size);
-  // The sum of squares and what its rounding lost.
+  // Sum of squares, and its rounding error.
   double sum = 0, lost = 0;
   for (const double x : v) {
     const double scaled = std::scalbn(x, -exponent);
@@ -28,7 +28,7 @@ double Norm(const Vec3& v) {
 
 bool Exceeds(double norm, double largest) { return !(norm <= largest); }
 
-// Also what was shortened to the limit before, and rounded.
+// Includes norms that were shortened to the limit before, and rounded.
 bool Reaches(double norm, double largest) {
   constexpr double kRounding = 1e-12;
   return norm != 0 && Exceeds(norm, (1 - kRounding) * largest);

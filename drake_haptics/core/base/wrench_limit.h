@@ -4,8 +4,8 @@
 
 namespace drake_haptics {
 
-/// How a wrench comes out of `LimitWrench`: kLimited where force or torque is
-/// at its limit, be it that it was shortened here or before.
+/// Outcome of `LimitWrench`: kLimited if force or torque is at its limit,
+/// whether it was shortened here or before.
 enum class WrenchFate { kAsAsked = 0, kLimited = 1, kNotFinite = 2 };
 
 /// A wrench within a device's limits.
@@ -14,8 +14,8 @@ struct LimitedWrench {
   WrenchFate fate = WrenchFate::kNotFinite;
 };
 
-/// Shortens force and torque, each by itself and along its own direction, to
-/// what a device may show. A wrench that is not finite becomes none.
+/// Shortens force (N) and torque (N·m) separately, each along its own
+/// direction, to a device's limits. A wrench that is not finite becomes zero.
 LimitedWrench LimitWrench(const Vec6& F, double max_torque, double max_force);
 
 }  // namespace drake_haptics

@@ -17,7 +17,8 @@ inline std::string Counted(std::size_t number, const char* noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
-/// Iterates by `__getitem__`, said to type checkers, who do not guess it.
+/// Iterates by `__getitem__`. It is defined for type checkers, which do not
+/// infer it.
 inline nanobind::object Iterate(nanobind::handle sequence) {
   return nanobind::steal(PySeqIter_New(sequence.ptr()));
 }

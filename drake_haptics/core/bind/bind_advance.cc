@@ -68,7 +68,7 @@ void BindAdvance(nb::module_& m) {
   using Shape = std::shared_ptr<Decomposition>;
   nb::class_<ContactExtrapolation>(
       m, "ContactExtrapolation",
-      "Carries contacts along with the bodies while features stay "
+      "Carries contacts along with the bodies, for fixed features "
       "(contact_extrapolation.h). Immutable.")
       .def(
           "__init__",
@@ -84,24 +84,25 @@ void BindAdvance(nb::module_& m) {
                 tool, {objects.begin(), objects.end()}, std::move(rest));
           },
           nb::arg("tool"), nb::arg("objects"), nb::arg("X_WO"),
-          "Carries contacts of `tool` with `objects`, those of the query.\n\n"
+          "Carries contacts of the query's `tool` and `objects`.\n\n"
           "Args:\n"
           "    X_WO: (7,) pose [qw qx qy qz x y z] of each object that never "
           "moves, None for the others.\n\n"
-          "Raises:\n    ValueError: not a pose, or not an entry for each "
-          "object.")
+          "Raises:\n"
+          "    ValueError: not a pose, or not an entry for each object.")
       .def("advance", &AdvanceValues, nb::arg("contacts"), nb::arg("found"),
            nb::arg("now"),
-           "The contacts where the bodies are now.\n\n"
+           "Returns the contacts at the bodies' current poses.\n\n"
            "Args:\n"
            "    contacts: `ContactSet` of a query, not shaded.\n"
-           "    found: (7 + 7 m,) poses at which it was asked, of the tool, "
-           "then of the m objects that move.\n"
-           "    now: (7 + 7 m,) their poses now.\n\n"
+           "    found: (7 + 7 m,) poses of that query, of the tool, then of "
+           "the m objects that move.\n"
+           "    now: (7 + 7 m,) current poses of the same bodies.\n\n"
            "Raises:\n"
-           "    ValueError: not poses, or not one for each body, or "
-           "a contact names no features, see `contact_set`.\n"
-           "    IndexError: a contact names what is not there.")
+           "    ValueError: a pose is not valid, there is not one for each "
+           "body, or a contact names no features, see `contact_set`.\n"
+           "    IndexError: a contact names an object, piece or feature that "
+           "does not exist.")
       .def("advance", &DifferentiateAdvance, nb::arg("contacts"),
            nb::arg("found"), nb::arg("now"), "The same with derivatives.");
 }

@@ -9,7 +9,8 @@
 #include "base/types.h"
 #include "bind/bind_eigen.h"
 
-/// NumPy arrays in and out of the bindings. What goes out is a fresh copy.
+/// NumPy arrays in and out of the bindings. Arrays that go out are fresh
+/// copies.
 namespace drake_haptics {
 
 /// (n, 3) positions; anything NumPy can convert is accepted.
@@ -29,7 +30,7 @@ template <typename Scalar, int columns>
 using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, columns,
                            columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
-/// (n, columns) array with entry(item, k) in row of `item`, column k.
+/// (n, columns) array with entry(item, k) in the row of `item`, column k.
 template <typename Scalar, int columns, typename Item, typename Entry>
 Rows<Scalar, columns> ToRows(const std::vector<Item>& items,
                              const Entry& entry) {

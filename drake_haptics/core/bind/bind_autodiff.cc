@@ -29,9 +29,10 @@ void BindAutoDiff(nb::module_& m) {
           },
           nb::arg("value"), nb::arg("gradient"),
           "Args:\n"
-          "    value: (n,).\n"
-          "    gradient: (n, D).\n\n"
-          "Raises:\n    ValueError: the sizes do not match.")
+          "    value: (n,) values.\n"
+          "    gradient: (n, D) derivatives.\n\n"
+          "Raises:\n"
+          "    ValueError: the sizes do not match.")
       .def("__len__", &AutoDiffVector::size)
       .def_prop_ro(
           "value", [](const AutoDiffVector& self) { return self.value; },

@@ -59,18 +59,17 @@ void BindAutoDiffContact(nb::module_& m) {
   m.def("differentiate_contacts", &Differentiate, nb::arg("contacts"),
         nb::arg("tolerance"), nb::arg("tool"), nb::arg("X_WT"),
         nb::arg("objects"), nb::arg("X_WO"),
-        "The answer of a query with its derivatives, while features stay "
+        "Contacts of a query with derivatives, for fixed features "
         "(query_gradient.h).\n\n"
         "Args:\n"
-        "    contacts: as the query gave them at these poses, not shaded.\n"
-        "    tolerance: of the query, m.\n"
+        "    contacts: contacts of the query at these poses, not shaded.\n"
+        "    tolerance: tolerance of the query, m.\n"
         "    tool, objects: the bodies of the query.\n"
         "    X_WT: (7,) pose [qw qx qy qz x y z].\n"
         "    X_WO: a (7,) pose for each object.\n\n"
         "Raises:\n"
-        "    ValueError: a pose is not one, or numbers of objects or of "
-        "variables differ, or "
-        "a contact names no features, see `contact_set`.\n"
+        "    ValueError: a pose is not valid, numbers of objects or of "
+        "variables differ, or a contact names no features, see `contact_set`.\n"
         "    IndexError: a contact names an object, a piece or a feature that "
         "is not given.");
 }

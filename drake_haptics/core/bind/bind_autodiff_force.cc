@@ -52,7 +52,7 @@ void BindClusters(nb::module_& m) {
         return thinned;
       },
       nb::arg("contacts"), nb::arg("cell"),
-      "The same with derivatives; which contacts stay is fixed.");
+      "The same with derivatives; the contacts that stay are fixed.");
   m.def(
       "cluster_contacts",
       [](const AutoDiffContactSet& contacts, double delta, double tolerance) {
@@ -65,7 +65,7 @@ void BindClusters(nb::module_& m) {
         return clusters;
       },
       nb::arg("contacts"), nb::arg("delta"), nb::arg("tolerance"),
-      "The same with derivatives; which contacts are together stays.");
+      "The same with derivatives; the groups of contacts are fixed.");
   m.def(
       "share_stiffness",
       [](const AutoDiffContactSet& contacts, double tolerance) {
@@ -77,7 +77,7 @@ void BindClusters(nb::module_& m) {
         return clusters;
       },
       nb::arg("contacts"), nb::arg("tolerance"),
-      "The same with derivatives; which contacts push stays.");
+      "The same with derivatives; the contacts that push are fixed.");
 }
 
 void RequireVector(const AutoDiffVector& vector, Eigen::Index size,
@@ -95,7 +95,7 @@ void RequireVector(const AutoDiffVector& vector, Eigen::Index size,
   }
 }
 
-// Frame i of several, one after another.
+// Frame i of frames that are stored one after another.
 MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
                                 const AutoDiffVector& V_WF, Eigen::Index i) {
   MovingFrameOf<AutoDiff> frame;
@@ -138,7 +138,7 @@ AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
   return wrench;
 }
 
-// Vectors one after another.
+// The entries of vectors, one vector after another.
 template <int Size>
 AutoDiffVector Flat(
     const std::vector<Eigen::Matrix<AutoDiff, Size, 1>>& vectors,
@@ -154,8 +154,8 @@ void BindWrench(nb::module_& m) {
   using Wrench = AutoDiffPenaltyWrench;
   nb::class_<Wrench> wrench(
       m, "AutoDiffPenaltyWrench",
-      "A `PenaltyWrench` with derivatives by D variables; rows of wrenches and "
-      "forces one after another. Immutable; copies are the object itself.");
+      "A `PenaltyWrench` with derivatives by D variables; its wrenches and "
+      "forces are flattened by rows. Immutable; copies are the object itself.");
   wrench.def_prop_ro(
       "wrench_model",
       [](const Wrench& w) {

@@ -10,7 +10,7 @@
 #include "bind/bind_columns.h"
 #include "law/autodiff_sets.h"
 
-/// What sets with derivatives have in common.
+/// Bindings that sets with derivatives have in common.
 namespace drake_haptics {
 
 /// The entries of a vector member of each item, one item after another.
@@ -45,14 +45,15 @@ void DefGradientColumn(Binding* binding, const char* name, const char* doc) {
       doc);
 }
 
-/// Its values, the number of variables, and copies that are the object.
+/// Defines the values, the number of variables, and copies that are the object
+/// itself.
 template <typename Binding>
 void DefDifferentiated(Binding* binding, const char* value_doc) {
   using Class = typename Binding::Type;
   binding->def_prop_ro(
       "value", [](const Class& self) { return ValuesOf(self.set); }, value_doc);
   binding->def_ro("num_derivatives", &Class::num_derivatives,
-                  "D, the number of variables that derivatives are by.");
+                  "Number D of the variables of the derivatives.");
   binding->def(
       "with_variables",
       [](const Class& self, Eigen::Index num_derivatives) {
@@ -64,8 +65,10 @@ void DefDifferentiated(Binding* binding, const char* value_doc) {
         return WithVariables(self, num_derivatives);
       },
       nanobind::arg("num_derivatives"),
-      "A constant, D = 0, with derivatives by that many variables: zeros.\n\n"
-      "Raises:\n    ValueError: it has derivatives.");
+      "Returns a constant (D = 0) with zero derivatives by that many "
+      "variables.\n\n"
+      "Raises:\n"
+      "    ValueError: it has derivatives already.");
   DefFrozenCopy(binding);
 }
 

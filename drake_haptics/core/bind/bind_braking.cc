@@ -56,21 +56,21 @@ void BindBraking(nb::module_& m) {
           },
           nb::arg("damping_Ns_per_m"), nb::arg("distance_m"),
           "Args:\n"
-          "    damping_Ns_per_m: b, half-way to the surface, N·s/m.\n"
-          "    distance_m: D, where braking begins, m.\n\n"
+          "    damping_Ns_per_m: damping b half-way to the surface, N·s/m.\n"
+          "    distance_m: distance D at which braking begins, m.\n\n"
           "Raises:\n"
           "    ValueError: b < 0, D <= 0, or one of them is not finite.");
   m.def("pre_contact_braking", &Brake, nb::arg("contacts"), nb::arg("p_WTo"),
         nb::arg("V_WT"), nb::arg("objects"), nb::arg("gains"),
-        "Braking of the approach of surfaces that do not touch yet (McNeely, "
+        "Brakes the approach of surfaces that do not touch yet (McNeely, "
         "Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s "
-        "w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), "
-        "s its share among contacts with like normals (braking.h). Never a "
-        "pull.\n\n"
+        "w v along its normal, with the speed of approach v, w = 4 (d/D)(1 − "
+        "d/D) and its share s among contacts with like normals (braking.h). It "
+        "never pulls.\n\n"
         "Args:\n"
-        "    p_WTo: (3,) tool's origin, m.\n"
-        "    V_WT: (6,) its spatial velocity [rad/s; m/s].\n"
-        "    objects: where they are.\n\n"
+        "    p_WTo: (3,) origin of the tool, m.\n"
+        "    V_WT: (6,) spatial velocity of the tool [rad/s; m/s].\n"
+        "    objects: frames of the objects.\n\n"
         "Returns:\n"
         "    (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), "
         "zero; B (36, by rows)], rotational first; then the wrench on each "

@@ -10,7 +10,8 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-// Mean of the middle half of many: free of interruptions, finer than a tick.
+// Mean of the middle half of many readings, which is free of interruptions and
+// finer than a tick of the clock.
 double ClockInterval() {
   using Clock = std::chrono::steady_clock;
   constexpr int kReadings = 20000;

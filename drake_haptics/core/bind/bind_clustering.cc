@@ -51,8 +51,8 @@ void BindClustering(nb::module_& m) {
       "(k, k) derivative of `compression` by the depths tolerance − distance; "
       "symmetric, positive semidefinite.");
   set.def_ro("is_bounded", &ClusterSet::is_bounded,
-             "Whether the search for the compressions met the bound on its "
-             "steps: they push, but are not quite those of the least energy.");
+             "Whether the search for the compressions reached its bound on "
+             "steps: they push, but are not quite those of least energy.");
   DefFrozenCopy(&set);
   m.def(
       "thin_contacts",
@@ -62,10 +62,11 @@ void BindClustering(nb::module_& m) {
         return thinned;
       },
       nb::arg("contacts"), nb::arg("cell"),
-      "Leaves out contacts that a deeper one of the same object, nearer than "
-      "`cell` (m) and with a normal that differs by less than 45°, stands for. "
-      "It takes over their extents; 0 leaves nothing out.\n\n"
-      "Raises:\n    ValueError: cell < 0.");
+      "Leaves out contacts near a deeper one of the same object: nearer than "
+      "`cell` (m), and with a normal that differs by less than 45°. The deeper "
+      "one takes over their extents; 0 leaves nothing out.\n\n"
+      "Raises:\n"
+      "    ValueError: cell < 0.");
   m.def(
       "cluster_contacts",
       [](const ContactSet& contacts, double delta, double tolerance) {
@@ -76,8 +77,9 @@ void BindClustering(nb::module_& m) {
       nb::arg("contacts"), nb::arg("delta"), nb::arg("tolerance"),
       "Groups contacts nearer than `tolerance` (m) with an octree of leaf size "
       "`delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 "
-      "to 5). Members weigh `tolerance` − distance.\n\n"
-      "Raises:\n    ValueError: delta <= 0 or tolerance < 0.");
+      "to 5). Members have the weight `tolerance` − distance.\n\n"
+      "Raises:\n"
+      "    ValueError: delta <= 0 or tolerance < 0.");
   m.def(
       "share_stiffness",
       [](const ContactSet& contacts, double tolerance) {

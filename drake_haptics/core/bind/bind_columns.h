@@ -83,7 +83,8 @@ void DefNumbers(Binding* binding, const char* name, const char* doc) {
       doc);
 }
 
-/// Lets a frozen value cross Drake's abstract ports: copies are the object.
+/// Lets a frozen value cross Drake's abstract ports: copies are the object
+/// itself.
 template <typename Binding>
 void DefFrozenCopy(Binding* binding) {
   binding->def("__deepcopy__",

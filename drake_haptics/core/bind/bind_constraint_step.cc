@@ -39,7 +39,7 @@ class SharedStepper {
              RowFriction(ToNumbers(coefficient, "coefficient"), break_away)}) {}
   SharedStepper(const SharedStepper& other) : stepper_(other.Copy()) {}
 
-  // For what never changes.
+  // For members that never change.
   const ConstraintStepper& constants() const { return stepper_; }
 
   void SetGains(const CouplingGains& gains) {
@@ -148,7 +148,7 @@ class SharedStepper {
 void BindResult(nb::module_& m) {
   nb::class_<Result> result(
       m, "ConstraintStepResult",
-      "What one tick of a `ConstraintStepper` found and did. Immutable.");
+      "Result of one tick of a `ConstraintStepper`. Immutable.");
   DefFrozenCopy(&result);
   result
       .def_prop_ro(
@@ -161,7 +161,7 @@ void BindResult(nb::module_& m) {
           "F_Ho_W_commanded",
           [](const Result& r) { return r.F_Ho_W_commanded; },
           "(6,) [torque; force] of the coupling on the handle at Ho in W, at "
-          "the tick's beginning: that of `joined_coupling_wrench`.")
+          "the tick's beginning, as from `joined_coupling_wrench`.")
       .def_prop_ro(
           "contacts",
           [](nb::handle self) {
@@ -170,7 +170,7 @@ void BindResult(nb::module_& m) {
           },
           nb::sig("def contacts(self) -> ContactSet"),
           "`ContactSet` of the rows that push, ordered by object and pieces. A "
-          "pair has several where it is flush.")
+          "flush pair has several.")
       .def_prop_ro(
           "friction",
           [](nb::handle self) {
@@ -178,7 +178,7 @@ void BindResult(nb::module_& m) {
                             nb::rv_policy::reference_internal, self);
           },
           nb::sig("def friction(self) -> FrictionStep"),
-          "`FrictionStep` of `contacts`, in place of clusters.")
+          "`FrictionStep` of `contacts`, which take the place of clusters.")
       .def_prop_ro(
           "F_Oo_W",
           [](const Result& r) {
@@ -189,31 +189,30 @@ void BindResult(nb::module_& m) {
           "origin of its frame, in W, friction included.")
       .def_prop_ro(
           "hessian", [](const Result& r) { return r.hessian; },
-          "(6, 6) slope of the forces of the step by the tool's motion in it, "
-          "[N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows "
-          "that push, and the slope of friction. What adds dF to the wrench on "
-          "the tool adds A⁻¹ dF to "
-          "its motion, and A⁻¹ dF / h to V_WT.")
+          "(6, 6) slope of the step's forces by the tool's motion, [N·m; N] by "
+          "[rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows that push, and "
+          "the slope of friction. A change dF of the wrench on the tool "
+          "changes its motion by A⁻¹ dF and V_WT by A⁻¹ dF / h.")
       .def_prop_ro(
           "contact_stiffness",
           [](const Result& r) { return r.contact_stiffness; },
-          "(6, 6) the part of it that is of the rows, Σ k a aᵀ.")
+          "(6, 6) the rows' part of `hessian`, Σ k a aᵀ.")
       .def_ro("num_rows", &Result::num_rows,
-              "Rows within reach, those that do not push among them.")
+              "Number of rows within reach, including those that do not push.")
       .def_ro("num_substeps", &Result::num_substeps,
-              "Parts into which a fast motion was divided, at least 1.")
+              "Number of parts of a divided fast motion, at least 1.")
       .def_ro("num_iterations", &Result::num_iterations,
-              "Iterations of Newton's method, all solutions of the tick "
-              "together.")
+              "Number of iterations of Newton's method, over all solutions of "
+              "the tick.")
       .def_ro("is_bounded", &Result::is_bounded,
-              "Whether a bound on iterations or parts ended the tick: the tool "
-              "has then gone less far than it should.")
+              "Whether a bound on iterations or parts ended the tick, so that "
+              "the tool moved less than it should.")
       .def_ro("least_distance_m", &Result::least_distance,
               "Smallest distance of the tool to an object at the tick's "
               "beginning, m; infinite where none is within reach.")
       .def_ro("is_apart", &Result::is_apart,
               "Whether no pieces touch or overlap at the tick's beginning. "
-              "Else the tool is led out at a bounded speed.")
+              "Otherwise the tool is led out at a bounded speed.")
       .def("__repr__", [](const Result& r) {
         return nb::str("ConstraintStepResult({}, {})")
             .format(Counted(static_cast<std::size_t>(r.num_rows), "row"),
@@ -233,19 +232,19 @@ void BindConstraintStep(nb::module_& m) {
   BindResult(m);
   nb::class_<SharedStepper> stepper(
       m, "ConstraintStepper",
-      "Contact as a constraint: a rigid tool on a virtual coupling that stays "
-      "a skin away from all objects, tick after tick.\n\n"
+      "Contact as a constraint: in each tick, a rigid tool on a virtual "
+      "coupling stays a skin away from all objects.\n\n"
       "The motion ξ = [θ; t] of To in a tick is the minimum of\n\n"
       "    ½ ξᵀ H ξ − rᵀ ξ + Σ φ_i(b_i − a_iᵀ ξ),  H = M/h² + B/h + K,\n"
       "    r = M V/h + B V + F − b_M,  a_i = [r_i × n_i; n_i],\n\n"
       "with the inertia M and its velocity terms b_M, the model F, K, B of the "
       "coupling and applied wrench, and a row for each pair of convex pieces "
       "within reach and for each corner where they are flush: the distance d_i "
-      "along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with "
-      "k = 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads "
+      "along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with k "
+      "= 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads "
       "back at 20 mm/s with at most 200 N; pieces that overlap are led out at "
-      "that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 "
-      "wherever a row that holds pushes. Without rows it is "
+      "that speed with at most 3 N in total. No contact makes energy: a_iᵀ ξ "
+      "<= 0 wherever a row that holds pushes. Without rows it is "
       "`RigidToolDynamics.step` with the coupling alone. A fast motion is "
       "divided, so that nothing is passed through.\n\n"
       "As in SAP (Castro et al., \"An Unconstrained Convex Formulation of "
@@ -274,15 +273,15 @@ void BindConstraintStep(nb::module_& m) {
           "    tool: Pieces of the tool.\n"
           "    objects: Pieces of each object.\n"
           "    skin_m: (num_objects,) distance δ that the tool keeps from each "
-          "object, m. What is to fit needs more clearance than it.\n"
+          "object, m. A tool that must fit somewhere needs more clearance than "
+          "that.\n"
           "    dynamics: Inertia of the tool.\n"
           "    gains: Spring and damper of the coupling, and their limits.\n"
           "    q_HT: (7,) pose of the tool in the handle.\n"
           "    period_s: Duration h of a tick, s.\n"
-          "    coefficient: (num_objects,) friction μ with each object. "
-          "Defaults "
-          "to none.\n"
-          "    break_away_m: How far the tool gives way before it slides, m. "
+          "    coefficient: (num_objects,) coefficient of friction μ with each "
+          "object. Defaults to none.\n"
+          "    break_away_m: Displacement of the tool before it slides, m. "
           "Defaults to 0.1 mm.\n\n"
           "Raises:\n"
           "    ValueError: not decompositions, not one skin or coefficient for "
@@ -292,14 +291,14 @@ void BindConstraintStep(nb::module_& m) {
           [](const SharedStepper& self) {
             return self.constants().num_anchors();
           },
-          "How many numbers the anchors of friction are: 8 for each object, or "
-          "nothing.")
+          "Number of values of the friction anchors: 8 for each "
+          "object, or 0.")
       .def_prop_ro(
           "num_objects",
           [](const SharedStepper& self) {
             return self.constants().num_objects();
           },
-          "How many objects there are.")
+          "Number of objects.")
       .def("set_gains", &SharedStepper::SetGains, nb::arg("gains"),
            "Changes the gains of the coupling, from the next tick on.")
       .def("set_object_pose", &SharedStepper::SetObjectPose, nb::arg("i"),
@@ -309,8 +308,8 @@ void BindConstraintStep(nb::module_& m) {
                    "numpy.typing.ArrayLike = ...) -> None"),
            "Poses object i at the next tick's beginning.\n\n"
            "Args:\n"
-           "    i: Which object.\n"
-           "    X_WO: Its pose, as a tracker takes it.\n"
+           "    i: Index of the object.\n"
+           "    X_WO: Pose of the object, as a tracker takes it.\n"
            "    V_WO: (6,) spatial velocity [rad/s; m/s] of its frame in the "
            "tick. Defaults to rest.\n\n"
            "Raises:\n"
@@ -331,27 +330,30 @@ void BindConstraintStep(nb::module_& m) {
           "Args:\n"
           "    q_WT, V_WT: (7,) pose [qw qx qy qz x y z] and (6,) spatial "
           "velocity [rad/s; m/s] of the tool.\n"
-          "    q_WH, V_WH: The same of the handle.\n"
-          "    F_applied_To_W: (6,) all other wrenches on the tool, [torque; "
-          "force] at To in W, its weight among them. Defaults to zero.\n"
-          "    anchors: (num_anchors,) the last tick's `friction.next_state`. "
-          "Defaults to those of a tool that has touched nothing.\n\n"
+          "    q_WH, V_WH: Pose and spatial velocity of the handle, likewise.\n"
+          "    F_applied_To_W: (6,) sum of all other wrenches on the tool, "
+          "[torque; force] at To in W, its weight among them. Defaults to "
+          "zero.\n"
+          "    anchors: (num_anchors,) `friction.next_state` of the last tick. "
+          "Defaults to the anchors of a tool that has touched nothing.\n\n"
           "Raises:\n"
-          "    ValueError: a value is not finite, or there are other anchors; "
-          "what was learnt stays.")
+          "    ValueError: a value is not finite, or the number of anchors "
+          "differs; the stepper stays as it was.")
       .def("differentiate", &SharedStepper::Differentiate, nb::arg("state"),
            nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("F_applied_To_W"),
            nb::arg("X_WO"), nb::arg("V_WO"),
            "Advances the tool by a tick with derivatives (step_gradient.h).\n\n"
            "Args:\n"
            "    state: (13,) pose and spatial velocity of the tool.\n"
-           "    q_WH, V_WH: (7,) and (6,), those of the handle.\n"
-           "    F_applied_To_W: (6,) all other wrenches on the tool.\n"
-           "    X_WO, V_WO: (7,) and (6,) for each object.\n\n"
+           "    q_WH, V_WH: (7,) and (6,) pose and spatial velocity of the "
+           "handle.\n"
+           "    F_applied_To_W: (6,) sum of all other wrenches on the tool.\n"
+           "    X_WO, V_WO: (7,) pose and (6,) spatial velocity of each "
+           "object.\n\n"
            "Returns:\n"
            "    (19 + 6 num_objects,): the state at the tick's end, the wrench "
            "of contact on the tool at its origin at the tick's beginning, and "
-           "that on each object at its origin, in W.\n\n"
+           "the wrench on each object at its origin, in W.\n\n"
            "Raises:\n"
            "    ValueError: a value is not finite, or numbers of objects or of "
            "variables differ.")

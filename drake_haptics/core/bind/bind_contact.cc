@@ -67,7 +67,7 @@ Feature MakeFeature(FeatureKind kind, int index) {
 void BindFeature(nb::module_& m) {
   nb::enum_<FeatureKind>(
       m, "FeatureKind", nb::is_arithmetic(),
-      "What a feature of a `ConvexPolytope` is: the list that its index counts "
+      "Kind of a feature of a `ConvexPolytope`: the list that its index counts "
       "in.")
       .value("VERTEX", FeatureKind::kVertex, "a row of `vertices`")
       .value("EDGE", FeatureKind::kEdge, "a row of `edges`")
@@ -77,7 +77,7 @@ void BindFeature(nb::module_& m) {
                       "kind and index are. Immutable.")
       .def(nb::new_(&MakeFeature), nb::arg("kind"), nb::arg("index"),
            "Raises:\n    ValueError: the index is negative or too large.")
-      .def_prop_ro("kind", &Feature::kind, "Which list the index counts in.")
+      .def_prop_ro("kind", &Feature::kind, "List that the index counts in.")
       .def_prop_ro("index", &Feature::index,
                    "Place in `vertices`, `edges` or `facets`, from 0.")
       .def(
@@ -90,14 +90,14 @@ void BindFeature(nb::module_& m) {
 
 void BindOneContact(nb::module_& m) {
   nb::enum_<ContactStatus>(m, "ContactStatus", nb::is_arithmetic(),
-                           "How the answer of a pair of polytopes was reached.")
+                           "How the contact of a pair of polytopes was found.")
       .value("NEAR", ContactStatus::kNear, "apart; closest features")
       .value("PENETRATING", ContactStatus::kPenetrating,
              "overlapping; penetration depth")
       .value("HELD", ContactStatus::kHeld,
              "passed behind the surface that it had pressed on; trackers only")
       .value("BOUNDED", ContactStatus::kBounded,
-             "a search met its bound; best answer seen");
+             "a search reached its bound; best answer found");
   nb::class_<Contact> contact(
       m, "Contact",
       "One contact of two convex polytopes A and B, in the world frame W, in "
@@ -131,11 +131,11 @@ void BindOneContact(nb::module_& m) {
           [](const Contact& c) { return static_cast<ContactStatus>(c.status); },
           "`ContactStatus`.")
       .def_ro("object_index", &Contact::object,
-              "Which object B is; 0 from a pair.")
+              "Index of the object B; 0 from a pair.")
       .def_ro("piece_A", &Contact::piece_A,
-              "Which piece of the tool A is; 0 from a pair.")
+              "Index of the tool's piece A; 0 from a pair.")
       .def_ro("piece_B", &Contact::piece_B,
-              "Which piece of the object B is; 0 from a pair.")
+              "Index of the object's piece B; 0 from a pair.")
       .def(
           "__repr__", [](const Contact& self) { return Text(self); },
           nb::sig("def __repr__(self) -> str"));
@@ -165,8 +165,9 @@ void BindContactSet(nb::module_& m) {
     }
     return least;
   };
-  set.def_prop_ro("least_distance", least_distance,
-                  "Of the nearest contact, m; infinite if there is none.");
+  set.def_prop_ro(
+      "least_distance", least_distance,
+      "Smallest distance of the contacts, m; infinite without any.");
   const auto text = [least_distance](const ContactSet& s) -> nb::object {
     if (s.contacts.empty()) return nb::str("ContactSet(no contacts)");
     return nb::str("ContactSet({}, least distance {:.6g} m)")

@@ -15,7 +15,7 @@ inline std::size_t PlaceOf(Py_ssize_t i, std::size_t size) {
   return static_cast<std::size_t>(i < 0 ? i + count : i);
 }
 
-/// What a contact of convex polytopes tells. `items` is a vector of contacts.
+/// Defines the columns of a set of contacts. `items` is its vector of contacts.
 template <auto items, typename Binding>
 void DefContactColumns(Binding* set) {
   DefColumn<items, &Contact::distance>(
@@ -32,9 +32,9 @@ void DefContactColumns(Binding* set) {
       set, "p_WC", "(n, 3) mean of both (paper, Eq. 1), in the world, m.");
   DefColumn<items, &Contact::extent>(
       set, "extent",
-      "(n,) measure of the overlap, m²: the area of flush faces under the "
-      "pressure of a thin layer, of a flush edge its length times the layer, "
-      "the layer squared at a point. Parts of a face that is cut add up.");
+      "(n,) measure of the overlap, m²: for flush faces their area under the "
+      "pressure of a thin layer, for a flush edge its length times the layer, "
+      "at a point the layer squared. Parts of a divided face add up.");
   DefColumn<items, &Contact::flushness>(
       set, "flushness",
       "(n,) share of the contact, 0 to 1, that lies in flush faces or edges.");
@@ -50,14 +50,14 @@ void DefContactColumns(Binding* set) {
                                      "(n,) int32, ContactStatus.");
 }
 
-/// Which pieces are in contact, where there are many.
+/// Defines the columns that name the pieces in contact.
 template <auto items, typename Binding>
 void DefPieceColumns(Binding* set) {
   DefColumn<items, &Contact::object>(set, "object_index",
-                                     "(n,) int32, which of the objects B is.");
+                                     "(n,) int32, index of the object B.");
   DefColumn<items, &Contact::piece_A>(
       set, "piece_A",
-      "(n,) int32, piece of A (the tool), whose feature it is.");
+      "(n,) int32, piece of A (the tool) that `feature_A` belongs to.");
   DefColumn<items, &Contact::piece_B>(set, "piece_B",
                                       "(n,) int32, piece of B (the object).");
 }

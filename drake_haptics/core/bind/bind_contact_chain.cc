@@ -26,8 +26,8 @@ namespace {
 using StateVector = Eigen::Matrix<double, 13, 1>;
 using Models = std::vector<WrenchModelVector>;
 
-// A tracker that answers with forces. What is asked of it goes on from what
-// was asked last.
+// A tracker that also returns forces. Each call goes on from the results of the
+// last one.
 class TrackedChain : public SceneTracker {
  public:
   explicit TrackedChain(const SceneTracker& tracker) : SceneTracker(tracker) {}
@@ -40,7 +40,7 @@ class TrackedChain : public SceneTracker {
     chain_.SetLaw({tolerance, delta, objects.frames, materials.materials});
   }
 
-  // A pose that is no vector is asked for as of any tracker.
+  // A pose that is not a vector is queried as by any tracker.
   ContactSet Query(nb::handle X_WT, nb::handle tolerance_value) {
     PoseVector q_WT;
     if (!nb::try_cast(X_WT, q_WT)) {
@@ -59,7 +59,8 @@ class TrackedChain : public SceneTracker {
   StateVector StepTool(const JoinedVector<double>& joined,
                        const PoseVector& q_HT, const ToolInertia& inertia,
                        double h, const Models& others) {
-    // The order of `RigidToolDynamics.step` of [coupling, contact, others].
+    // The sum is in the order of `RigidToolDynamics.step` of [coupling,
+    // contact, others].
     WrenchModel sum;
     sum += ComputeJoinedCoupling(joined, q_HT).tool;
     const ToolState state = StateOf(joined);
@@ -75,13 +76,14 @@ class TrackedChain : public SceneTracker {
     return FindWrench({q_WT, V_WT}).F;
   }
 
-  // The least distance, and that below which contacts push.
+  // Returns the least distance, and the one below which contacts push, m.
   std::pair<double, double> FindDeepest() const {
     const Turn turn(&mutex_, Turn::Gil::kHold);
     return {chain_.least_distance(), chain_.tolerance_of_law()};
   }
 
-  // Contacts, clusters, the least distance and what the query took.
+  // Returns the numbers of contacts and clusters, the least distance (m) and
+  // the time of the query (s).
   std::tuple<std::size_t, int, double, double> Summarize(
       const StateVector& state) {
     const Turn turn(&mutex_, Turn::Gil::kHold);
@@ -127,7 +129,8 @@ class TrackedChain : public SceneTracker {
     return chain_.FindWrench(state, &tracker_);
   }
 
-  // Forgets the last answer after the tracker was changed or asked otherwise.
+  // Forgets the last results after the tracker was changed or queried
+  // otherwise.
   void Refresh() {
     if (changes_ != seen_changes_) chain_.Forget();
     seen_changes_ = changes_;
@@ -142,58 +145,56 @@ class TrackedChain : public SceneTracker {
 void BindContactChain(nb::module_& m) {
   nb::class_<TrackedChain, SceneTracker>(
       m, "ContactChain",
-      "A `SceneTracker` that goes on from the contacts to what they do to a "
-      "tool that a coupling holds: query, clusters, penalty force, coupling "
-      "and "
-      "the tool's step in one call. What was asked last is kept, so that a "
-      "query of the same pose finds nothing again.")
+      "A `SceneTracker` that also computes the motion of a tool on a coupling "
+      "under its contacts: query, clusters, penalty force, coupling and the "
+      "tool's step in one call. It keeps its last results, so that another "
+      "query of the same pose costs nothing.")
       .def(nb::init<const SceneTracker&>(), nb::arg("tracker"),
-           "Goes on from what a tracker knows; it stays as it is.")
+           "Goes on from the state of a tracker, which stays as it is.")
       .def("set_law", &TrackedChain::SetLaw, nb::arg("tolerance"),
            nb::arg("delta").none(), nb::arg("objects"), nb::arg("materials"),
-           "Says how contacts push.\n\n"
+           "Sets the law by which contacts push.\n\n"
            "Args:\n"
-           "    tolerance: contacts below it push, m.\n"
-           "    delta: cell of the octree, m; None lets contacts share "
+           "    tolerance: distance below which contacts push, m.\n"
+           "    delta: size of the octree's cells, m; None lets contacts share "
            "stiffness.\n"
-           "    objects: where they rest.\n"
-           "    materials: one for each of them.")
+           "    objects: frames of the objects, which rest.\n"
+           "    materials: materials of the objects.")
       .def("query", &TrackedChain::Query, nb::arg("X_WT").none(),
            nb::arg("tolerance") = nb::none(),
            nb::sig("def query(self, X_WT: "
                    "drake_haptics.common.pose_like.PoseLike, "
                    "tolerance: float | None = None) -> ContactSet"),
-           "As `SceneTracker.query`; what was asked last is not looked for "
-           "again where the pose is a vector (7,).")
+           "As `SceneTracker.query`, but for a pose vector (7,) equal to the "
+           "last one the last results are returned.")
       .def("step_tool", &TrackedChain::StepTool, nb::arg("joined"),
            nb::arg("q_HT"), nb::arg("dynamics"), nb::arg("h"),
            nb::arg("others"),
            "The tool's next state (13,): `RigidToolDynamics.step` under the "
            "coupling, the contacts and other wrench models, in this order.\n\n"
            "Args:\n"
-           "    joined, q_HT: as of `joined_coupling_wrench`.\n"
-           "    dynamics: of the tool.\n"
-           "    h: the step, s.\n"
-           "    others: (78,) wrench models.\n\n"
-           "Raises:\n    ValueError: a pose is not finite, or a gain is out of "
-           "range.")
+           "    joined, q_HT: arguments of `joined_coupling_wrench`.\n"
+           "    dynamics: inertia of the tool.\n"
+           "    h: duration of the step, s.\n"
+           "    others: other wrench models (78,).\n\n"
+           "Raises:\n"
+           "    ValueError: a pose is not finite, or a gain is out of range.")
       .def("find_force", &TrackedChain::FindForce, nb::arg("X_WT"),
            nb::arg("V_WT"),
            "The wrench (6,) [torque; force] of the contacts on the tool at To, "
            "N·m and N, at its pose (7,) and spatial velocity (6,).")
       .def_prop_ro("deepest", &TrackedChain::FindDeepest,
-                   "Least distance of the contacts that were asked for last "
-                   "(m, infinite without any), and the distance below which "
-                   "they push, m.")
-      .def(
-          "summarize", &TrackedChain::Summarize, nb::arg("state"),
-          "Numbers of contacts and of clusters, the least distance (m, "
-          "infinite without contacts) and what the query took (s), of the tool "
-          "in a state (13,).")
+                   "Least distance of the contacts that were found last (m, "
+                   "infinite without any), and the distance below which they "
+                   "push, m.")
+      .def("summarize", &TrackedChain::Summarize, nb::arg("state"),
+           "Numbers of contacts and of clusters, the least distance (m, "
+           "infinite without contacts) and the time of the query (s), for the "
+           "tool in a state (13,).")
       .def("handle_slopes", &TrackedChain::FindHandleSlopes, nb::arg("joined"),
            nb::arg("q_HT"), nb::arg("others"),
-           "`handle_slopes` (72,) of the coupling, and the contacts with other "
-           "wrench models, of the arguments of `step_tool`.")
+           "`handle_slopes` (72,) of the coupling and of the contacts plus "
+           "other wrench models, for the arguments of `step_tool`.")
       .def("__deepcopy__", [](const TrackedChain& self,
                               nb::handle) { return TrackedChain(self); })
       .def("__copy__",

@@ -38,10 +38,10 @@ class PythonContactServo : public ContactServo {
 void BindServoTool(nb::module_& m) {
   nb::class_<ServoTool>(
       m, "ServoTool",
-      "The tool as a servo solves it: each period is one exact step of contact "
-      "from the device's newest handle, and ends in the local wrench that a "
-      "`ServoLaw` carries on until the next. It knows no clock. Poses are "
-      "[qw qx qy qz x y z], m; velocities [ω; v], rad/s and m/s; wrenches "
+      "Solves the tool for a servo: each period is one exact step of contact "
+      "from the device's newest handle state. It yields the local wrench that "
+      "a `ServoLaw` extrapolates until the next period. It has no clock. Poses "
+      "are [qw qx qy qz x y z], m; velocities [ω; v], rad/s and m/s; wrenches "
       "[τ; f], N·m and N.")
       .def(
           "__init__",
@@ -87,36 +87,38 @@ void BindServoTool(nb::module_& m) {
           "Args:\n"
           "    q_BH, V_BH: Pose (7,) and velocity (6,) of the handle in the "
           "device's base frame.\n"
-          "    F_applied_To_W: (6,) all other wrenches on the tool, its weight "
-          "among them. Defaults to zero.\n\n"
+          "    F_applied_To_W: (6,) sum of all other wrenches on the tool, its "
+          "weight among them. Defaults to zero.\n\n"
           "Returns:\n"
           "    The wrench (6,) on the handle in the base frame at the period's "
           "beginning, and its slopes K and B (6, 6), those of coupling and "
-          "contact in series: it changes by -K δ - B ΔV as the handle moves "
-          "on.\n\n"
+          "contact in series: the wrench changes by -K δ - B ΔV as the handle "
+          "moves on.\n\n"
           "Raises:\n"
-          "    ValueError: A value is not finite, or no pose; the tool stays "
-          "where it was.");
+          "    ValueError: A value is not finite, or not a pose; the tool "
+          "stays where it was.");
 }
 
 void BindThread(nb::module_& m) {
   using Status = ContactServoStatus;
   nb::class_<Status>(m, "ContactServoStatus",
-                     "What a `ContactServo` has done. Counted from the start.")
+                     "Counters and state of a `ContactServo`, counted from the "
+                     "start.")
       .def_ro("num_solved", &Status::num_solved,
-              "Periods in which contact was solved.")
+              "Number of periods in which contact was solved.")
       .def_ro("num_late", &Status::num_late,
-              "Periods that were overrun: the servo went on by the linear "
-              "wrench of the last one.")
-      .def_ro("num_refused", &Status::num_refused, "Handles that were no pose.")
-      .def_ro("is_running", &Status::is_running, "False once closed.");
+              "Number of periods that were overrun: the servo went on with the "
+              "linear wrench of the last one.")
+      .def_ro("num_refused", &Status::num_refused,
+              "Number of handle states that were not poses.")
+      .def_ro("is_running", &Status::is_running, "Whether the thread runs.");
 
   nb::class_<PythonContactServo>(
       m, "ContactServo",
-      "A thread that solves contact for a `UdpServo`, in each of its periods "
-      "with the device's newest handle, and gives it the local wrench, which "
-      "nobody else may do then. It runs without Python; no method but `close` "
-      "waits for it. One thread of the program may use it.")
+      "A thread that solves contact for a `UdpServo`, in each period with the "
+      "device's newest handle state, and publishes the local wrench to it, "
+      "which nothing else may do then. It runs without Python; only `close` "
+      "waits for it. Only one thread of the program may use it.")
       .def(
           "__init__",
           [](PythonContactServo* self, PythonUdpServo* servo,
@@ -126,18 +128,19 @@ void BindThread(nb::module_& m) {
           nb::arg("servo"), nb::arg("tool"), nb::keep_alive<1, 2>(),
           nb::sig("def __init__(self, servo: UdpServo, tool: ServoTool) -> "
                   "None"),
-          "Starts to wait for the first `renew`.\n\n"
+          "Starts the thread, which waits for the first `renew`.\n\n"
           "Args:\n"
-          "    servo: It answers the device.\n"
-          "    tool: It is copied.")
+          "    servo: Servo that answers the device.\n"
+          "    tool: Tool, which is copied.")
       .def("renew", &PythonContactServo::Renew, nb::arg("gains"),
            nb::arg("F_applied_To_W"),
-           "Says that the loop goes on, and with which coupling and which "
-           "other wrenches (6,) on the tool at To in W, its weight among them. "
-           "Where this is not called in time, the servo releases as its law "
-           "says.")
+           "Says that the loop goes on, and sets the coupling and the sum (6,) "
+           "of the other wrenches on the tool at To in W, its weight among "
+           "them. If this is not called in time, the servo releases the force "
+           "by its law.")
       .def("set_share", &PythonContactServo::SetShare, nb::arg("share"),
-           "Shows that part of the wrench, 0 to 1, from the next `renew` on.")
+           "Sets the share of the wrench that is shown, 0 to 1, from the next "
+           "`renew` on.")
       .def_prop_ro(
           "tool_state",
           [](PythonContactServo& self) { return ToVector(self.tool()); },

@@ -140,7 +140,7 @@ void BindDecomposition(nb::module_& m) {
       .def_prop_ro(
           "vertices",
           [](const Decomposition& self) { return ToArray3(self.vertices); },
-          "(n, 3) of the mesh, m, in the object's frame.")
+          "(n, 3) vertices of the mesh, m, in the object's frame.")
       .def_prop_ro(
           "triangles",
           [](const Decomposition& self) {
@@ -167,16 +167,16 @@ void BindDecomposition(nb::module_& m) {
         nb::arg("triangles"), nb::arg("solid"),
         nb::arg("progress") = nb::none(),
         "Convex surface decomposition (paper, section 5.3.1). A solid that "
-        "differs from its hull by noise alone is one piece; pieces leave the "
-        "solid by no more than 1e-6 of the mesh's size.\n\n"
+        "differs from its hull by noise alone is one piece; pieces extend "
+        "beyond the solid by no more than 1e-6 of the mesh's size.\n\n"
         "Args:\n"
         "    vertices: (n, 3) positions, m.\n"
         "    triangles: (m, 3) vertex indices, int32, counter-clockwise seen "
         "from outside.\n"
-        "    solid: (m,) uint8, whether a triangle bounds a solid; the pieces "
-        "of others are flat.\n"
-        "    progress: called with the share done in [0, 1]; returns whether "
-        "to go on.\n\n"
+        "    solid: (m,) uint8, whether a triangle bounds a solid; pieces of "
+        "other triangles are flat.\n"
+        "    progress: function of the share done, in [0, 1], that returns "
+        "whether to go on.\n\n"
         "Raises:\n"
         "    ValueError: bad indices or values.\n"
         "    RuntimeError: `progress` returned False.");
@@ -187,23 +187,26 @@ void BindDecomposition(nb::module_& m) {
         "Args:\n"
         "    vertices: (n, 3) positions, m.\n"
         "    triangles: (m, 3) vertex indices, int32.\n"
-        "    piece_of_triangle: (m,) int32, numbers from 0 without gaps.\n\n"
+        "    piece_of_triangle: (m,) int32, piece of each triangle, from 0 "
+        "without gaps.\n\n"
         "Raises:\n"
         "    ValueError: bad indices, values or labels.");
   m.def("adopt_convex_pieces", &Adopt, nb::arg("vertices"),
         nb::arg("triangles"), nb::arg("pieces"), nb::arg("tolerance"),
-        "Pieces made elsewhere. Facets on the mesh are original, all others "
-        "virtual.\n\n"
+        "Decomposition into pieces that were made elsewhere. Facets on the "
+        "mesh are original, all others virtual.\n\n"
         "Args:\n"
         "    vertices: (n, 3) positions, m.\n"
         "    triangles: (m, 3) vertex indices, int32.\n"
         "    pieces: list of (k, 3) points, m, whose hulls are the pieces.\n"
         "    tolerance: distance from the mesh, m, up to which a facet lies on "
-        "it; infinite where the pieces take its place, all facets original.\n\n"
+        "it; infinite if the pieces take its place, so that all facets are "
+        "original.\n\n"
         "Raises:\n"
         "    ValueError: bad indices or values.");
   nb::class_<MergedPieces>(m, "MergedPieces",
-                           "Which pieces of a decomposition become one.")
+                           "Groups of a decomposition's pieces, each of which "
+                           "becomes one piece.")
       .def_prop_ro(
           "group_of_piece",
           [](const MergedPieces& self) {
@@ -222,28 +225,30 @@ void BindDecomposition(nb::module_& m) {
         "    vertices: (n, 3) positions, m.\n"
         "    triangles: (m, 3) vertex indices, int32.\n"
         "    solid: (m,) uint8, whether a triangle bounds a solid.\n"
-        "    piece_of_triangle: (m,) int32 of the exact decomposition.\n"
-        "    error: m, zero or more.\n"
-        "    progress: called with the share done in [0, 1]; returns whether "
-        "to go on.\n\n"
+        "    piece_of_triangle: (m,) int32, pieces of the exact "
+        "decomposition.\n"
+        "    error: largest departure, m, zero or more.\n"
+        "    progress: function of the share done, in [0, 1], that returns "
+        "whether to go on.\n\n"
         "Raises:\n"
         "    ValueError: bad indices or values.\n"
         "    RuntimeError: `progress` returned False.");
   m.def("assemble_merged_pieces", &AssembleMerged, nb::arg("vertices"),
         nb::arg("triangles"), nb::arg("solid"), nb::arg("piece_of_triangle"),
         nb::arg("group_of_piece"), nb::arg("error"),
-        "The pieces of groups that merge_pieces found.\n\n"
+        "Decomposition with the groups that merge_pieces found.\n\n"
         "Args:\n"
-        "    vertices, triangles, solid, piece_of_triangle, error: as for "
-        "merge_pieces.\n"
-        "    group_of_piece: (k,) int32 that it returned.\n\n"
+        "    vertices, triangles, solid, piece_of_triangle, error: arguments "
+        "of merge_pieces.\n"
+        "    group_of_piece: (k,) int32, groups that merge_pieces returned.\n\n"
         "Raises:\n"
         "    ValueError: bad indices, values or labels.");
   m.def(
       "surface_distance", &MeasureDistance, nb::arg("vertices_A"),
       nb::arg("triangles_A"), nb::arg("vertices_B"), nb::arg("triangles_B"),
-      "Largest distance, m, of any point of either surface from the other: "
-      "a bound on it that is above by no more than 5%, or 1e-4 of the size.\n\n"
+      "Upper bound on the distance, m, of any point of either surface from the "
+      "other. It exceeds the largest distance by no more than 5%, or 1e-4 of "
+      "the size.\n\n"
       "Args:\n"
       "    vertices_A, vertices_B: (n, 3) positions, m.\n"
       "    triangles_A, triangles_B: (m, 3) vertex indices, int32.\n\n"

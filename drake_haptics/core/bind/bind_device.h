@@ -11,7 +11,7 @@
 #include "bind/bind_eigen.h"
 #include "bind/bind_real_array.h"
 
-/// What the bindings of packets and of the gate share.
+/// Helpers that the bindings of packets and of the gate share.
 namespace drake_haptics {
 
 /// @throws std::invalid_argument unless the value is `size` real numbers.
@@ -56,7 +56,7 @@ inline const std::uint8_t* Data(const nanobind::bytes& bytes) {
   return static_cast<const std::uint8_t*>(bytes.data());
 }
 
-/// A verdict as Python has it.
+/// Name of a verdict in Python.
 inline const char* NameOf(dh_verdict verdict) {
   static constexpr const char* kNames[DH_VERDICT_COUNT] = {
       "accepted",      "too_short",          "wrong_magic",

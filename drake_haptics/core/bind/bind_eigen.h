@@ -9,8 +9,8 @@
 
 namespace drake_haptics {
 
-/// What NumPy is called for, looked up as the module is loaded: an import can
-/// fail, and can run any code, which a conversion must not.
+/// NumPy functions that are called, looked up as the module is loaded: an
+/// import can fail and can run any code, which a conversion must not.
 struct NumpyFunctions {
   PyObject* asarray = nullptr;
   PyObject* empty = nullptr;
@@ -25,10 +25,10 @@ void ImportNumpy();
 /// Vectors and matrices of doubles to and from NumPy. bind.h includes this for
 /// all bindings: with nanobind/eigen/dense.h alone two of them would disagree.
 ///
-/// nanobind hands every array over by DLPack and lets NumPy's `asarray` and
-/// `copy` take what comes out, of a size like a wrench's a microsecond in each
-/// direction. Here an array of doubles is read where it is, and what comes out
-/// is copied into a fresh one. All else that nanobind can read it still reads.
+/// nanobind passes every array by DLPack and NumPy's `asarray` and `copy`,
+/// which takes a microsecond in each direction for an array of a wrench's size.
+/// Here an array of doubles is read in place, and results are copied into a
+/// fresh one. nanobind still reads all other arrays that it can.
 namespace nanobind::detail {
 
 // As an integer: Eigen has an enumeration of its own for each type.
@@ -40,13 +40,14 @@ concept AlignedMatrix = std::is_same_v<typename T::Scalar, double> &&
                         std::is_base_of_v<Eigen::MatrixBase<T>, T> &&
                         !(kMatrixOptions<T> & Eigen::DontAlign);
 
-// As nanobind's own caster of such types, and more constrained.
+// Like nanobind's own caster of such types, but more constrained.
 template <AlignedMatrix T>
 struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
                                   is_ndarray_scalar_v<typename T::Scalar>>> {
   static constexpr int rows = T::RowsAtCompileTime;
   static constexpr int columns = T::ColsAtCompileTime;
-  // What nanobind's own caster takes: another type, by its alignment alone.
+  // The type that nanobind's own caster takes, which differs in alignment
+  // alone.
   using Other = Eigen::Matrix<double, rows, columns,
                               kMatrixOptions<T> | Eigen::DontAlign>;
   static constexpr int kDimensions = ndim_v<T>;
@@ -88,10 +89,10 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
   }
 
  private:
-  // What a value has proven to be.
+  // Kind of a value that was read.
   enum class Found {
     kDoubles,    // an array of doubles of this shape, read
-    kTooLarge,   // the same, of more items than memory holds (they may be one)
+    kTooLarge,   // such an array that zero strides make larger than memory
     kNoStrides,  // a buffer that leaves its strides out, as those of ctypes do:
                  // nanobind's own caster would follow a null pointer
     kOther
@@ -99,7 +100,7 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
 
   static object AsArray(PyObject* source) noexcept {
     PyObject* const asarray = drake_haptics::numpy_functions.asarray;
-    // Of the calls that take one argument, this is in the stable ABI of 3.12.
+    // The call of one argument that the stable ABI of 3.12 has.
     object array = steal(PyObject_Vectorcall(asarray, &source, 1, nullptr));
     if (!array.is_valid()) PyErr_Clear();
     return array;

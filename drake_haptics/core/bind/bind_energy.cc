@@ -37,26 +37,27 @@ void RequireDistinct(const std::vector<std::string>& sources) {
 void BindAccount(nb::module_& m) {
   nb::class_<EnergyAccount>(
       m, "EnergyAccount",
-      "The books of one part of a haptic loop, J. What went in and neither "
-      "came out nor is stored is lost; a part that makes no energy never gets "
-      "back what it lost.")
+      "Energy account of one part of a haptic loop, J. Energy that went in and "
+      "neither came out nor is stored is lost; a passive part never regains "
+      "lost energy.")
       .def_prop_ro("in_J", &EnergyAccount::in,
-                   "What went into the part, through all its ports.")
-      .def_prop_ro("out_J", &EnergyAccount::out, "What came out.")
-      .def_prop_ro("stored_J", &EnergyAccount::stored, "What it holds.")
+                   "Energy that went into the part, through all its ports.")
+      .def_prop_ro("out_J", &EnergyAccount::out, "Energy that came out.")
+      .def_prop_ro("stored_J", &EnergyAccount::stored,
+                   "Energy that the part stores.")
       .def_prop_ro("lost_J", &EnergyAccount::lost,
                    "in − out − (stored − stored at the start).")
       .def_prop_ro("damped_J", &EnergyAccount::damped,
-                   "Part of it: what dampers took.")
+                   "Part of `lost_J` that dampers took.")
       .def_prop_ro("created_J", &EnergyAccount::created,
-                   "What it made: the largest fall of `lost_J` from any "
-                   "earlier value.")
+                   "Energy that the part made: the largest fall of `lost_J` "
+                   "from any earlier value.")
       .def_prop_ro("bound_J", &EnergyAccount::bound,
-                   "What the sampling of its force explains of that, over the "
+                   "Energy that the sampling of its force explains over the "
                    "same stretch of time.")
       .def_prop_ro("beyond_J", &EnergyAccount::beyond,
-                   "The most it made over any stretch of time beyond what "
-                   "sampling explains there.");
+                   "Largest energy made over a stretch of time, less the "
+                   "energy that sampling explains there.");
 }
 
 void BindLedger(nb::module_& m) {
@@ -78,26 +79,26 @@ void BindLedger(nb::module_& m) {
           nb::arg("dynamics"), nb::arg("gains"), nb::arg("q_HT"),
           nb::arg("period_s"), nb::arg("sources"),
           "Args:\n"
-          "    dynamics: of the tool.\n"
-          "    gains: of the coupling.\n"
+          "    dynamics: inertia of the tool.\n"
+          "    gains: gains of the coupling.\n"
           "    q_HT: (7,) pose of the tool in the handle at which its spring "
           "rests.\n"
-          "    period_s: the tick, s.\n"
+          "    period_s: duration of a tick, s.\n"
           "    sources: names of the other sources of wrench on the tool.\n\n"
-          "Raises:\n    ValueError: the tick is not above 0 s, or a name is "
-          "there "
-          "twice or that of another account.")
+          "Raises:\n"
+          "    ValueError: the tick is not above 0 s, or a name occurs twice "
+          "or is that of another account.")
       .def(
           "begin_again",
           [](NamedLedger& self, const CouplingGains& gains) {
             self.ledger.BeginAgain(gains);
           },
           nb::arg("gains"),
-          "To be called where gains of the coupling or of a source were "
-          "changed. The tick up to the next `add` is left out of the books, "
-          "and so is what the change puts into springs or takes out.\n\n"
+          "Goes on after a change of gains, of the coupling or of a source. "
+          "The tick up to the next `add` is left out of the accounts, and so "
+          "is the energy that the change puts into springs or takes out.\n\n"
           "Args:\n"
-          "    gains: of the coupling from now on.")
+          "    gains: gains of the coupling from now on.")
       .def(
           "add",
           [](NamedLedger& self, const ToolStateVector& tool_state,
@@ -122,21 +123,21 @@ void BindLedger(nb::module_& m) {
           },
           nb::arg("tool_state"), nb::arg("q_WH"), nb::arg("F_Ho_W_rendered"),
           nb::arg("coupling"), nb::arg("wrench_models"), nb::arg("stored_J"),
-          "Books the tick between the call before and this one; the first call "
-          "only says what is stored. All is read at one instant, after one "
-          "step of the tool and before the next. A tick with an energy that is "
-          "not finite is left out.\n\n"
+          "Books the tick between the last call and this one; the first call "
+          "only sets the stored energies. All values are of one instant, after "
+          "a step of the tool and before the next. A tick with an energy that "
+          "is not finite is left out.\n\n"
           "Args:\n"
           "    tool_state: (13,) = [pose (7), m; spatial velocity (6), rad/s "
           "and m/s].\n"
           "    q_WH: (7,) pose of the handle.\n"
           "    F_Ho_W_rendered: (6,) wrench that was held on the handle up to "
-          "now, "
-          "at Ho in W, N·m and N.\n"
+          "now, at Ho in W, N·m and N.\n"
           "    coupling: (78,) wrench model of the coupling on the tool.\n"
-          "    wrench_models: (78,) of each source.\n"
+          "    wrench_models: (78,) wrench model of each source.\n"
           "    stored_J: elastic or potential energy of each source.\n\n"
-          "Raises:\n    ValueError: a source has no reading.")
+          "Raises:\n"
+          "    ValueError: a source has no reading.")
       .def_prop_ro(
           "accounts",
           [](const NamedLedger& self) {
@@ -152,8 +153,8 @@ void BindLedger(nb::module_& m) {
             return by_name;
           },
           nb::sig("def accounts(self) -> dict[str, EnergyAccount]"),
-          "`EnergyAccount` of each part by its name, as it stands now: the "
-          "loop as a whole as the hand has it at its port, `device`; "
+          "`EnergyAccount` of each part by its name, as it stands now: "
+          "`device`, the whole loop as the hand feels it at its port; "
           "`display`, `coupling`, `tool`, and each source.");
 }
 
@@ -164,16 +165,17 @@ void BindStoredEnergy(nb::module_& m) {
         "depth below the tolerance.\n\n"
         "Args:\n"
         "    clusters: `ClusterSet`.\n"
-        "    stiffness: of each object, N/m.\n"
-        "    tolerance: t, m.\n\n"
-        "Raises:\n    IndexError: a cluster names an object that has none.");
+        "    stiffness: stiffness of each object, N/m.\n"
+        "    tolerance: distance below which contacts push, m.\n\n"
+        "Raises:\n"
+        "    IndexError: a cluster names an object without a stiffness.");
   m.def("weight_energy", &WeightEnergy, nb::arg("q_WT"), nb::arg("p_TTcm"),
         nb::arg("weight_W"),
         "Potential energy of the tool's weight, J, zero with its center of "
         "mass at the world's origin.\n\n"
         "Args:\n"
-        "    q_WT: (7,) its pose.\n"
-        "    p_TTcm: (3,) center of mass in its frame, m.\n"
+        "    q_WT: (7,) pose of the tool.\n"
+        "    p_TTcm: (3,) center of mass in the tool's frame, m.\n"
         "    weight_W: (3,) mass times gravity, N.");
 }
 

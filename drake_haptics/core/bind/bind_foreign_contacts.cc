@@ -12,7 +12,7 @@ namespace {
 
 using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-// How far from 1 the length of another library's normal may be.
+// Largest difference from 1 of the length of another library's normal.
 constexpr double kUnitSlack = 1e-6;
 
 void RequireUsable(const Contact& contact) {
@@ -33,7 +33,8 @@ ContactSet ToContactSet(const Eigen::VectorXd& distance, const Rows3& nhat_BA_W,
   const Eigen::Index n = distance.size();
   if (nhat_BA_W.rows() != n || p_WCa.rows() != n || p_WCb.rows() != n ||
       object_index.size() != n) {
-    throw std::invalid_argument("all columns must have one row for a contact");
+    throw std::invalid_argument(
+        "all columns must have one row for each contact");
   }
   ContactSet set;
   set.contacts.resize(n);
@@ -59,18 +60,19 @@ void BindForeignContacts(nb::module_& m) {
   m.def("contact_set", &ToContactSet, nb::arg("distance"), nb::arg("nhat_BA_W"),
         nb::arg("p_WCa"), nb::arg("p_WCb"), nb::arg("object_index"),
         "Contacts that another library found, for the laws of this one. They "
-        "have no extent and no features: what needs to know how a contact "
-        "moves (derivatives, force shading, ticks without a query) refuses "
-        "them with a ValueError.\n\n"
+        "have no extent and no features: derivatives, force shading and ticks "
+        "without a query, which need to know how a contact moves, refuse them "
+        "with a ValueError.\n\n"
         "Args:\n"
         "    distance: (n,) signed distances, m.\n"
         "    nhat_BA_W: (n, 3) unit normals out of the object into the tool.\n"
         "    p_WCa, p_WCb: (n, 3) witness points on the tool and on the "
         "object, m.\n"
         "    object_index: (n,) int32, in ascending order.\n\n"
-        "Raises:\n    ValueError: the columns do not match or are not "
-        "ordered, a number is not finite, a normal is not of unit length, or "
-        "an index is negative.");
+        "Raises:\n"
+        "    ValueError: the columns do not match or are not ordered, a number "
+        "is not finite, a normal is not of unit length, or an index is "
+        "negative.");
 }
 
 }  // namespace drake_haptics

@@ -123,11 +123,11 @@ void BindFrictionStep(nb::module_& m) {
   step.def_ro("stored_J", &FrictionStep::stored,
               "Elastic energy of the contacts, ½ k z² of each, J.");
   DefNumbers<&FrictionStep::next_state>(
-      &step, "next_state", "(n,) what the next tick's step starts from.");
+      &step, "next_state", "(n,) state from which the next tick starts.");
   DefFrozenCopy(&step);
 }
 
-// Vectors one after another.
+// The entries of vectors, one vector after another.
 Eigen::Map<const VectorOf<AutoDiff>> Flat(
     const std::vector<Vec3Of<AutoDiff>>& vectors) {
   return {vectors.empty() ? nullptr : vectors.front().data(),
@@ -167,7 +167,7 @@ void BindAutoDiffStep(nb::module_& m) {
                                                  s.set.next_state.size()),
             s.num_derivatives);
       },
-      "(n,) what the next tick's step starts from.");
+      "(n,) state from which the next tick starts.");
   DefDifferentiated(&step, "The `FrictionStep`.");
 }
 
@@ -175,10 +175,10 @@ void BindStickSlipModel(nb::module_& m) {
   nb::class_<StickSlipModel>(
       m, "StickSlipModel",
       "Stick-slip friction after Hayward and Armstrong (2000) of a tool on "
-      "objects, at the representative contacts of clusters. Immutable: its "
-      "state, (n,), goes in and comes out. It is [X_WT (7); X_WO (7) of "
-      "each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z "
-      "(3), load, grip], the poses and the contacts of the last tick. A slot "
+      "objects, at the representative contacts of clusters. Immutable: the "
+      "state (n,) is passed in and returned. It is [X_WT (7); X_WO (7) of each "
+      "object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), "
+      "load, grip], the poses and the contacts of the last tick. A slot "
       "without a load is empty.")
       .def(
           "__init__",
@@ -192,24 +192,25 @@ void BindStickSlipModel(nb::module_& m) {
           nb::arg("break_away_m"), nb::arg("reach_m"),
           "Args:\n"
           "    coefficient: (m,) coefficient of sliding friction of each "
-          "object; one at 0 has none.\n"
+          "object; 0 for no friction.\n"
           "    moves: (m,) whether each object moves.\n"
-          "    static_ratio: static over sliding coefficient.\n"
+          "    static_ratio: ratio of the static to the sliding coefficient.\n"
           "    break_away_m: displacement after which a contact breaks away.\n"
-          "    reach_m: distance over which contacts hand on their adhesion.\n"
-          "\n"
+          "    reach_m: distance over which contacts hand their adhesion "
+          "on.\n\n"
           "Raises:\n"
           "    ValueError: a coefficient is negative, the ratio below 1, or a "
           "length not above 0.")
       .def_prop_ro("state_size", &StickSlipModel::state_size, "n.")
       .def("step", &StepFriction, nb::arg("state"), nb::arg("clusters"),
            nb::arg("contact_wrench"), nb::arg("q_WT"), nb::arg("q_WO"),
-           "Friction now, and the state for the next tick.\n\n"
+           "Returns the friction of this tick, and with it the state for the "
+           "next.\n\n"
            "Args:\n"
-           "    state: (n,) from the last tick; zeros before the first.\n"
-           "    clusters: of now.\n"
-           "    contact_wrench: their normal forces are the norms of its "
-           "`f_cluster_W`.\n"
+           "    state: (n,) state from the last tick; zeros before the first.\n"
+           "    clusters: clusters of this tick.\n"
+           "    contact_wrench: wrench of the clusters; the norms of its "
+           "`f_cluster_W` are the normal forces.\n"
            "    q_WT: (7,) pose of the tool.\n"
            "    q_WO: (7 j,) poses of the j objects that move, one after the "
            "other.\n\n"
@@ -218,8 +219,8 @@ void BindStickSlipModel(nb::module_& m) {
            "object that has no coefficient.")
       .def("step", &DifferentiateStep, nb::arg("state"), nb::arg("clusters"),
            nb::arg("contact_wrench"), nb::arg("q_WT"), nb::arg("q_WO"),
-           "The same with derivatives: those of each contact as it sticks or "
-           "slides, and with the neighbors it has.");
+           "The same with derivatives; which contacts stick or slide, and "
+           "their neighbors, are fixed.");
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ void BindGate(nb::module_& m) {
   const dh_gate_limits usual = dh_gate_default_limits(0, 0);
   nb::class_<dh_gate>(
       m, "DeviceGate",
-      "What stands between commands and a hand, in the driver's process: the "
-      "state machine of gate.h (docs/device-protocol.md), time as an argument. "
-      "Force and torque never exceed the limits, in any state.")
+      "Safety gate between commands and a hand, in the driver's process: the "
+      "state machine of gate.h (docs/device-protocol.md), with time as an "
+      "argument. Force and torque never exceed the limits, in any state.")
       .def(
           "__init__",
           [](dh_gate* self, double max_force_N, double max_torque_Nm,
@@ -78,11 +78,12 @@ void BindGate(nb::module_& m) {
           "Args:\n"
           "    max_force_N: Largest norm of the force, N; 0 for none.\n"
           "    max_torque_Nm: Largest norm of the torque, N·m; 0 for none.\n"
-          "    max_speed_m_per_s: A faster handle is a fault while active.\n"
-          "    max_turn_rate_rad_per_s: Likewise for its turning.\n"
-          "    ramp_in_s: From none to full, 0.001 to 10 s.\n"
-          "    ramp_out_s: From full to none, 0.001 to 1 s.\n"
-          "    max_ttl_s: The longest that a command lives, 1e-6 to 1 s.\n\n"
+          "    max_speed_m_per_s: Largest speed of the handle, m/s; a faster "
+          "one is a fault while active.\n"
+          "    max_turn_rate_rad_per_s: Largest turn rate, rad/s, likewise.\n"
+          "    ramp_in_s: Time from no force to full force, 0.001 to 10 s.\n"
+          "    ramp_out_s: Time from full force to none, 0.001 to 1 s.\n"
+          "    max_ttl_s: Longest time to live of a command, 1e-6 to 1 s.\n\n"
           "Raises:\n"
           "    ValueError: a limit is not finite or out of its bounds.")
       .def(
@@ -92,40 +93,41 @@ void BindGate(nb::module_& m) {
                                           data.size()));
           },
           nb::arg("now_ns"), nb::arg("data"),
-          "Takes a packet in, whatever it holds.\n\n"
+          "Takes a packet with any content.\n\n"
           "Args:\n"
-          "    now_ns: The driver's monotonic clock, ns.\n"
+          "    now_ns: Time of the driver's monotonic clock, ns.\n"
           "    data: The datagram.\n\n"
           "Returns:\n"
-          "    'accepted', or why not: a key of `counts`.\n\n"
+          "    'accepted', or the reason for refusal: a key of `counts`.\n\n"
           "Raises:\n"
-          "    ValueError: now_ns is no 64-bit time.")
+          "    ValueError: now_ns is not a 64-bit time.")
       .def("step", &StepGate, nb::arg("now_ns"), nb::arg("X_BH"),
            nb::arg("V_BH"),
-           "Moves the time on; once per tick, after the packets.\n\n"
+           "Advances the time; called once per tick, after the packets.\n\n"
            "Args:\n"
-           "    now_ns: The driver's monotonic clock, ns.\n"
-           "    X_BH: (7,) the handle's pose [qw qx qy qz x y z], m. A value "
+           "    now_ns: Time of the driver's monotonic clock, ns.\n"
+           "    X_BH: (7,) pose of the handle [qw qx qy qz x y z], m. A value "
            "that is not finite is a fault.\n"
-           "    V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s; "
-           "likewise.\n\n"
+           "    V_BH: (6,) spatial velocity of the handle [ω; v], rad/s and "
+           "m/s; likewise.\n\n"
            "Returns:\n"
            "    (6,) the wrench to show [τ; f] at Ho in B, N·m and N.\n\n"
            "Raises:\n"
-           "    ValueError: X_BH or V_BH has a wrong shape, or now_ns is no "
+           "    ValueError: X_BH or V_BH has a wrong shape, or now_ns is not a "
            "64-bit time.")
       .def(
           "fail", [](dh_gate& gate) { dh_gate_fail(&gate); },
-          "The driver's own hardware is at fault: zero wrench at once.")
+          "Reports a fault of the driver's own hardware: zero wrench at once.")
       .def_prop_ro(
           "state", [](const dh_gate& gate) { return int{gate.state}; },
-          "As `backend.GateState`.")
+          "State, a number of `backend.GateState`.")
       .def_prop_ro(
           "fault", [](const dh_gate& gate) { return int{gate.fault}; },
-          "As `backend.Fault`.")
-      .def_ro("session", &dh_gate::session, "Host that is served, or 0.")
+          "Fault, a number of `backend.Fault`.")
+      .def_ro("session", &dh_gate::session,
+              "Session of the host that is served, or 0.")
       .def_ro("command_sequence", &dh_gate::command_sequence,
-              "Of the newest command that was accepted.")
+              "Sequence of the newest command that was accepted.")
       .def_prop_ro(
           "command_F_Ho_B",
           [](const dh_gate& gate) { return ToArray(gate.command_F_Ho_B); },
@@ -133,10 +135,12 @@ void BindGate(nb::module_& m) {
       .def_prop_ro(
           "F_Ho_B", [](const dh_gate& gate) { return ToArray(gate.F_Ho_B); },
           "(6,) the wrench that is shown, N·m and N.")
-      .def_ro("scale", &dh_gate::scale, "Share of it that is shown, 0 to 1.")
-      .def_prop_ro("rejected", &dh_gate_rejected, "Packets refused so far.")
-      .def_prop_ro("counts", &Counts, "Packets by verdict.")
-      // Drake copies what is in a state.
+      .def_ro("scale", &dh_gate::scale,
+              "Share of the newest wrench that is shown, 0 to 1.")
+      .def_prop_ro("rejected", &dh_gate_rejected,
+                   "Number of packets refused so far.")
+      .def_prop_ro("counts", &Counts, "Number of packets by verdict.")
+      // Drake copies the values in a state.
       .def("__deepcopy__",
            [](const dh_gate& gate, nb::handle) { return gate; });
 }

@@ -74,12 +74,13 @@ void BindPath(nb::module_& m) {
           nb::arg("starts_s"), nb::arg("cubics"), nb::arg("period_s"),
           "Path of m segments.\n\n"
           "Args:\n"
-          "    starts_s: (m,) where they begin, rising from 0 s. The last one "
-          "never ends.\n"
+          "    starts_s: (m,) starts of the segments, rising from 0 s. The "
+          "last one never ends.\n"
           "    cubics: (m, 4, 7) coefficients by power of the time since the "
-          "start, of [qw qx qy qz x y z]; the quaternion of any length.\n"
-          "    period_s: when the path begins again; infinite if never.\n\n"
-          "Raises:\n    ValueError: sizes do not match or there is no period.")
+          "start, of [qw qx qy qz x y z]; the quaternion may have any length.\n"
+          "    period_s: time until the path repeats, s; infinite if never.\n\n"
+          "Raises:\n"
+          "    ValueError: sizes do not match or there is no period.")
       .def(
           "evaluate",
           [](const PosePath& self, double time) {
@@ -94,10 +95,9 @@ void BindPath(nb::module_& m) {
 void BindHeldArm(nb::module_& m) {
   nb::class_<ArmDynamics>(
       m, "ArmDynamics",
-      "A chain of six revolute joints and a hand that draws "
-      "its handle H along a path. States are (12,): angles, "
-      "rad, and speeds, rad/s. All methods raise "
-      "FloatingPointError where a state is not finite.")
+      "A chain of six revolute joints and a hand that pulls its handle H along "
+      "a path. States are (12,): angles, rad, and speeds, rad/s. All methods "
+      "raise FloatingPointError where a state is not finite.")
       .def(
           "__init__",
           [](ArmDynamics* self, const Mat6& J_WH, const PoseVector& q_WH,
@@ -110,10 +110,10 @@ void BindHeldArm(nb::module_& m) {
           "Args:\n"
           "    J_WH: (6, 6) spatial velocity of H per joint speed, all angles "
           "zero.\n"
-          "    q_WH: (7,) its pose there.\n"
-          "    path: X_WP over time.\n"
-          "    q_PH: (7,) where the hand wants the handle in P.\n"
-          "    gains: of the hand.")
+          "    q_WH: (7,) pose of H, all angles zero.\n"
+          "    path: pose X_WP over time.\n"
+          "    q_PH: (7,) pose in P at which the hand wants the handle.\n"
+          "    gains: gains of the hand's spring and damper.")
       .def("calc_handle_state", &HandleState<double>, nb::arg("state"),
            "Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; "
            "m/s].")
@@ -150,22 +150,21 @@ void BindHeldArm(nb::module_& m) {
 void BindFrameChange(nb::module_& m) {
   using Slope = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   nb::class_<FrameChange>(m, "FrameChange",
-                          "Tells in a frame A what is given in a frame B that "
-                          "does not move in it, and wrenches the other way.")
+                          "Changes poses and velocities from a frame B to a "
+                          "frame A in which B rests, and wrenches from A to B.")
       .def(nb::init<const PoseVector&>(), nb::arg("X_AB"),
            "Pose (7,) of B in A, [qw qx qy qz x y z], m.\n\n"
            "Raises:\n    ValueError: it is not a pose.")
-      .def(
-          "change_motion", &FrameChange::ChangeMotion, nb::arg("X_BH"),
-          nb::arg("V_BH"),
-          "Pose and spatial velocity of H in A, (13,), of those in B: (7,), m, "
-          "and (6,), [rad/s; m/s].")
+      .def("change_motion", &FrameChange::ChangeMotion, nb::arg("X_BH"),
+           nb::arg("V_BH"),
+           "Pose and spatial velocity of H in A, (13,), from those in B: (7,), "
+           "m, and (6,), [rad/s; m/s].")
       .def(
           "change_wrench_back",
           [](const FrameChange& self, const Vec6& F_A) {
             return self.ChangeBack(F_A);
           },
-          nb::arg("F_A"), "Wrench (6,) in B of one in A, [N·m; N].")
+          nb::arg("F_A"), "Wrench (6,) in B from that in A, [N·m; N].")
       .def(
           "change_slopes_back",
           [](const FrameChange& self,
@@ -176,7 +175,7 @@ void BindFrameChange(nb::module_& m) {
                 self.ChangeBack(Mat6(Eigen::Map<const Slope>(K + 36))));
           },
           nb::arg("slopes_A"),
-          "Stiffness and damping (6, 6) in B of those in A, (72,) by rows.");
+          "Stiffness and damping (6, 6) in B from those in A, (72,) by rows.");
 }
 
 }  // namespace

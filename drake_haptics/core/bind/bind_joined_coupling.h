@@ -10,7 +10,7 @@ namespace drake_haptics {
 template <typename T>
 using JoinedVector = Eigen::Matrix<T, 32, 1>;
 
-/// The coupling of joined motions.
+/// Returns the coupling's wrenches at joined motions.
 /// @throws std::invalid_argument for a gain that is out of range.
 CouplingWrench ComputeJoinedCoupling(const JoinedVector<double>& joined,
                                      const PoseVector& q_HT);

@@ -24,11 +24,12 @@ PyMethodDef get_no_witness_functions = {"get_no_witness_functions",
 NB_MODULE(_core, m) {
   m.doc() =
       "The compiled core of drake_haptics: geometry, contact query, clustering "
-      "and wrenches. What of it is for programs of your own has its name in "
-      "drake_haptics; the rest is the engine behind it.";
+      "and wrenches. The parts for your own programs have names in "
+      "drake_haptics; the rest is the engine behind them.";
   // Drake keeps the Python systems of a Diagram alive until the interpreter is
-  // gone, and with them what they hold of ours: no leak, but reported as one.
-  // Whoever looks for leaks of ours asks for reports.
+  // gone, and with them the core's objects that they hold. That is not a leak,
+  // but would be reported as one. To look for leaks of the core, set the
+  // variable.
   nanobind::set_leak_warnings(std::getenv("DRAKE_HAPTICS_LEAK_WARNINGS") !=
                               nullptr);
   drake_haptics::ImportNumpy();
@@ -69,7 +70,7 @@ NB_MODULE(_core, m) {
       nanobind::sig("def make_witness_override() -> "
                     "collections.abc.Callable[[object], list]"),
       "Returns the `DoGetWitnessFunctions` of a system without witness "
-      "functions. It is a built-in function: pybind11 takes one for none of "
-      "Python, keeps in mind that the class overrides nothing, and asks no "
-      "more.");
+      "functions. It is a built-in function, which pybind11 does not take for "
+      "an override in Python: it remembers that the class has none, and does "
+      "not look again.");
 }

@@ -5,26 +5,26 @@
 
 #include "law/penalty_force.h"
 
-/// What a tick needs to know of all objects of a scene, in the core's own form:
-/// there can be a thousand, and none of them moves or changes in most ticks.
+/// Frames and materials of all objects of a scene, in the core's own form:
+/// there can be a thousand, and in most ticks none of them moves or changes.
 namespace drake_haptics {
 
 using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using Rows6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
-/// Where each object is and how it moves.
+/// Origin and spatial velocity of each object.
 struct ObjectFrames {
   std::vector<MovingFrame> frames;
 
-  /// @throws std::invalid_argument unless there is one of each for each object.
+  /// @throws std::invalid_argument unless both have one row for each object.
   ObjectFrames(const Rows3& p_WO, const Rows6& V_WO);
 };
 
-/// How each object answers contact.
+/// Contact stiffness and damping of each object.
 struct ContactMaterials {
   std::vector<ContactMaterial> materials;
 
-  /// @throws std::invalid_argument unless there is one of each for each object,
+  /// @throws std::invalid_argument unless both have one entry for each object,
   ///         or if one is negative or not finite.
   ContactMaterials(const Eigen::VectorXd& stiffness,
                    const Eigen::VectorXd& damping);

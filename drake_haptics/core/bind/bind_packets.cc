@@ -72,11 +72,14 @@ Packet Unpack(dh_verdict (*unpack)(const std::uint8_t*, std::size_t, Packet*),
 
 void BindPackets(nb::module_& m) {
   nb::class_<dh_state>(m, "DeviceStatePacket",
-                       "What a driver sends (docs/device-protocol.md). The "
-                       "handle H in the frame B of the device's base, SI.")
-      .def_ro("session", &dh_state::session, "Host that is served, or 0.")
-      .def_ro("sequence", &dh_state::sequence, "Rises by one, and wraps.")
-      .def_ro("time_ns", &dh_state::time_ns, "Of the sample, driver's clock.")
+                       "Packet that a driver sends (docs/device-protocol.md): "
+                       "the handle H in the frame B of the device's base, SI.")
+      .def_ro("session", &dh_state::session,
+              "Session of the host that is served, or 0.")
+      .def_ro("sequence", &dh_state::sequence,
+              "Number of the packet; rises by one, and wraps.")
+      .def_ro("time_ns", &dh_state::time_ns,
+              "Time of the sample by the driver's clock, ns.")
       .def_prop_ro(
           "X_BH", [](const dh_state& s) { return ToArray(s.X_BH); },
           "(7,) pose [qw qx qy qz x y z], m.")
@@ -86,29 +89,36 @@ void BindPackets(nb::module_& m) {
       .def_prop_ro(
           "F_Ho_B", [](const dh_state& s) { return ToArray(s.F_Ho_B); },
           "(6,) wrench shown [τ; f] at Ho, N·m and N.")
-      .def_ro("boot", &dh_state::boot, "Random in each run of the driver.")
+      .def_ro("boot", &dh_state::boot,
+              "Number that is random in each run of the driver.")
       .def_ro("command_sequence", &dh_state::command_sequence,
-              "Of the newest command that was accepted.")
+              "Number of the newest command that was accepted.")
       .def_ro("buttons", &dh_state::buttons, "Bit i: button i is held.")
-      .def_ro("rejected", &dh_state::rejected, "Packets refused so far.")
+      .def_ro("rejected", &dh_state::rejected,
+              "Number of packets refused so far.")
       .def_ro("max_force_N", &dh_state::max_force_N, "Largest force, N.")
       .def_ro("max_torque_Nm", &dh_state::max_torque_Nm, "Largest torque, N·m.")
-      .def_ro("gate", &dh_state::gate, "As `backend.GateState`.")
-      .def_ro("fault", &dh_state::fault, "As `backend.Fault`.");
-  nb::class_<dh_command>(m, "DeviceCommandPacket",
-                         "What a host sends (docs/device-protocol.md), SI.")
-      .def_ro("session", &dh_command::session, "Random in each run of it.")
-      .def_ro("sequence", &dh_command::sequence, "Rises by one, and wraps.")
-      .def_ro("time_ns", &dh_command::time_ns, "Of sending, host's clock.")
+      .def_ro("gate", &dh_state::gate,
+              "State, a number of `backend.GateState`.")
+      .def_ro("fault", &dh_state::fault, "Fault, a number of `backend.Fault`.");
+  nb::class_<dh_command>(
+      m, "DeviceCommandPacket",
+      "Packet that a host sends (docs/device-protocol.md), SI.")
+      .def_ro("session", &dh_command::session,
+              "Number that is random in each run of the host.")
+      .def_ro("sequence", &dh_command::sequence,
+              "Number of the packet; rises by one, and wraps.")
+      .def_ro("time_ns", &dh_command::time_ns,
+              "Time of sending by the host's clock, ns.")
       .def_prop_ro(
           "F_Ho_B", [](const dh_command& c) { return ToArray(c.F_Ho_B); },
           "(6,) wrench to show [τ; f] at Ho in B, N·m and N.")
       .def_ro("state_sequence", &dh_command::state_sequence,
-              "Of the state that this answers.")
+              "Number of the state that this answers.")
       .def_ro("ttl_us", &dh_command::ttl_us, "Time to live, µs.")
       .def_prop_ro(
           "enable", [](const dh_command& c) { return c.enable != 0; },
-          "Whether force is to be shown.");
+          "Whether to show force.");
   m.def("pack_state", &PackState, nb::kw_only(), nb::arg("sequence"),
         nb::arg("time_ns"), nb::arg("X_BH"), nb::arg("V_BH"), nb::arg("F_Ho_B"),
         nb::arg("boot"), nb::arg("session"), nb::arg("command_sequence"),
@@ -117,30 +127,32 @@ void BindPackets(nb::module_& m) {
         "The 208 bytes of a state packet; the arguments are the attributes of "
         "`DeviceStatePacket`.\n\n"
         "Raises:\n"
-        "    ValueError: a number does not fit its field, or a wrong shape.");
+        "    ValueError: a number does not fit, or a shape is wrong.");
   m.def(
       "unpack_state",
       [](const nb::bytes& packet) { return Unpack(&dh_unpack_state, packet); },
       nb::arg("packet"),
-      "What a state packet says. Its real numbers may be NaN or infinite.\n\n"
+      "Reads a state packet. Its real numbers may be NaN or infinite.\n\n"
       "Raises:\n"
-      "    ValueError: it is damaged or none; says which check failed.");
+      "    ValueError: it is damaged or not a state packet; the message names "
+      "the check that failed.");
   m.def("pack_command", &PackCommand, nb::kw_only(), nb::arg("session"),
         nb::arg("sequence"), nb::arg("time_ns"), nb::arg("F_Ho_B"),
         nb::arg("state_sequence"), nb::arg("ttl_us"), nb::arg("enable"),
         "The 88 bytes of a command packet; the arguments are the attributes of "
         "`DeviceCommandPacket`.\n\n"
         "Raises:\n"
-        "    ValueError: a number does not fit its field, or a wrong shape.");
+        "    ValueError: a number does not fit, or a shape is wrong.");
   m.def(
       "unpack_command",
       [](const nb::bytes& packet) {
         return Unpack(&dh_unpack_command, packet);
       },
       nb::arg("packet"),
-      "What a command packet says. Its wrench may be NaN or infinite.\n\n"
+      "Reads a command packet. Its wrench may be NaN or infinite.\n\n"
       "Raises:\n"
-      "    ValueError: it is damaged or none; says which check failed.");
+      "    ValueError: it is damaged or not a command packet; the message "
+      "names the check that failed.");
 }
 
 }  // namespace drake_haptics

@@ -37,7 +37,7 @@ struct PairTrajectory {
   std::vector<double> seconds;
 };
 
-// Two polytopes and what their query remembers.
+// Two polytopes and the state of their query.
 class ConvexPair {
  public:
   ConvexPair(nb::handle A, nb::handle B, nb::handle depth)
@@ -122,8 +122,8 @@ void BindPairTrajectory(nb::module_& m) {
   DefContactColumns<&PairTrajectory::contacts>(&trajectory);
   DefNumbers<&PairTrajectory::seconds>(
       &trajectory, "seconds",
-      "(n,) time that each query took inside the core, s, by a steady clock "
-      "whose own reading (some 0.03 µs) is in it.");
+      "(n,) time that each query took inside the core, s, including the "
+      "reading of the clock (some 0.03 µs).");
   DefFrozenCopy(&trajectory);
 }
 
@@ -145,13 +145,13 @@ void BindConvexPair(nb::module_& m) {
       m, "ConvexPair",
       "Signed distance of two convex polytopes A and B, each query starting "
       "from the last one's answer. Apart it is the distance of the closest "
-      "features. In overlap it is minus the penetration depth: `tracked` "
-      "walks from the last answer to the locally least way out (paper, 5.2), "
-      "and so does not pop through a thin plate; `global` is the least way out "
-      "of all, exact and proven.\n\n"
+      "features. In overlap it is minus the penetration depth: `tracked` walks "
+      "from the last answer to a local minimum of the depth (paper, 5.2), and "
+      "so does not pop through a thin plate; `global` is the global minimum, "
+      "exact and proven.\n\n"
       "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
-      "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
-      "as it is. Threads that share a pair take turns.")
+      "[qw qx qy qz x y z]; lengths in m. A ValueError leaves the pair as it "
+      "was. Threads that share a pair take turns.")
       .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
            nb::arg("B").none(), nb::arg("depth").none() = "tracked",
            nb::sig("def __init__(self, A: ConvexPolytope, B: ConvexPolytope, "
@@ -175,13 +175,14 @@ void BindConvexPair(nb::module_& m) {
           nb::sig("def query_trajectory(self, X_WA: "
                   "drake_haptics.common.pose_like.PoseLike, X_WB: "
                   "drake_haptics.common.pose_like.PoseLike) -> PairTrajectory"),
-          "What n single queries would give, in one call without the GIL.\n\n"
+          "Contacts of n queries in turn, in one call without the GIL.\n\n"
           "Args:\n"
           "    X_WA: (n, 4, 4) or (n, 7) poses of A in turn, or one pose if A "
           "rests.\n"
-          "    X_WB: the same of B.\n\n"
-          "Raises:\n    ValueError: a pose is not finite or not rigid, or "
-          "numbers of poses differ; nothing was asked then.")
+          "    X_WB: poses of B, likewise.\n\n"
+          "Raises:\n"
+          "    ValueError: a pose is not finite or not rigid, or numbers of "
+          "poses differ; then no query is made.")
       .def("reset", &ConvexPair::Reset, "Forgets what earlier queries found.")
       .def("__deepcopy__",
            [](const ConvexPair& self, nb::handle) { return ConvexPair(self); })

@@ -56,13 +56,14 @@ void BindPassivity(nb::module_& m) {
           nb::arg("period_s"), nb::arg("max_damping_Ns_per_m"),
           nb::arg("max_rotational_damping_Nms_per_rad"), nb::arg("reserve_J"),
           "Args:\n"
-          "    period_s: the tick, s.\n"
+          "    period_s: duration of a tick, s.\n"
           "    max_damping_Ns_per_m: largest damping, N·s/m.\n"
-          "    max_rotational_damping_Nms_per_rad: N·m·s/rad.\n"
+          "    max_rotational_damping_Nms_per_rad: largest rotational damping, "
+          "N·m·s/rad.\n"
           "    reserve_J: largest balance that is kept, J.\n\n"
           "Raises:\n"
-          "    ValueError: the period is not above 0, another one below 0, or "
-          "one of them not finite.");
+          "    ValueError: the period is not above 0, another bound is below "
+          "0, or one of them is not finite.");
   m.def(
       "passivity_control", &Control<double>, nb::arg("state"),
       nb::arg("F_Ho_W_rendered"), nb::arg("F_Ho_W_desired"), nb::arg("q_WH"),
@@ -73,14 +74,13 @@ void BindPassivity(nb::module_& m) {
       "    state: (8,) balance of the last tick, J, and the handle's pose "
       "then.\n"
       "    F_Ho_W_rendered: (6,) wrench on the handle at Ho in W that was held "
-      "since, [N·m; N].\n"
-      "    F_Ho_W_desired: (6,) wrench asked for now.\n"
+      "since then, [N·m; N].\n"
+      "    F_Ho_W_desired: (6,) wrench that is desired now.\n"
       "    q_WH: (7,) pose now, [qw qx qy qz x y z].\n"
       "    V_WH: (6,) spatial velocity now, [rad/s; m/s].\n\n"
       "Returns:\n"
       "    (14,) wrench to show (6), F_Ho_W_desired itself where the balance "
-      "is not "
-      "below 0; the next state (8), balance now, J, and pose now.");
+      "is not below 0; then the next state (8), the balance and pose now.");
   m.def("passivity_control", &DifferentiateControl, nb::arg("state"),
         nb::arg("F_Ho_W_rendered"), nb::arg("F_Ho_W_desired"), nb::arg("q_WH"),
         nb::arg("V_WH"), nb::arg("bounds"), "The same with derivatives.");

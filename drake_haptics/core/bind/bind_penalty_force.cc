@@ -62,8 +62,8 @@ ObjectFrames Moved(ObjectFrames self, const std::vector<int>& index,
 void BindObjects(nb::module_& m) {
   nb::class_<ObjectFrames>(
       m, "ObjectFrames",
-      "Where each object of a scene is and how it moves, as the core reads it. "
-      "Immutable.")
+      "Origins and spatial velocities of all objects of a scene, as the core "
+      "reads them. Immutable.")
       .def(nb::init<const Rows3&, const Rows6&>(), nb::arg("p_WO"),
            nb::arg("V_WO"),
            "Args:\n"
@@ -89,18 +89,19 @@ void BindObjects(nb::module_& m) {
           },
           "(m, 6) spatial velocities [rad/s; m/s].")
       .def("moved", &Moved, nb::arg("index"), nb::arg("X_WO"), nb::arg("V_WO"),
-           "Returns a copy in which some objects are elsewhere.\n\n"
+           "Returns a copy in which some objects have moved.\n\n"
            "Args:\n"
-           "    index: which.\n"
-           "    X_WO: pose (7,) [qw qx qy qz x y z] of each of them, m.\n"
-           "    V_WO: spatial velocity (6,) of each of them.\n\n"
+           "    index: indices of these objects.\n"
+           "    X_WO: pose (7,) [qw qx qy qz x y z] of each, m.\n"
+           "    V_WO: spatial velocity (6,) of each, [rad/s; m/s].\n\n"
            "Raises:\n"
-           "    ValueError: there is not one of each for each index.\n"
+           "    ValueError: there is not a pose and a velocity for each "
+           "index.\n"
            "    IndexError: there is no such object.");
   nb::class_<ContactMaterials> materials(
       m, "ContactMaterials",
-      "How each object of a scene answers contact, as the core reads it. "
-      "Immutable.");
+      "Contact stiffness and damping of all objects of a scene, as the core "
+      "reads them. Immutable.");
   materials
       .def(nb::init<const Eigen::VectorXd&, const Eigen::VectorXd&>(),
            nb::arg("stiffness"), nb::arg("damping"),
@@ -166,19 +167,18 @@ void BindForces(nb::module_& m) {
       },
       nb::arg("clusters"), nb::arg("X_WT"), nb::arg("V_WT"), nb::arg("objects"),
       nb::arg("materials"),
-      "The `wrench_model` (78,) of `penalty_force` of the same, for a tick "
-      "that asks for nothing else.");
+      "The `wrench_model` (78,) of `penalty_force` with the same arguments, "
+      "for a tick that needs nothing else.");
   m.def("penalty_force", &ComputePosed, nb::arg("clusters"), nb::arg("X_WT"),
         nb::arg("V_WT"), nb::arg("objects"), nb::arg("materials"),
         "Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the "
         "compression along the normal, plus damping while approaching; never a "
-        "pull. What it takes depends on the clusters, not on how many objects "
-        "there are.\n\n"
+        "pull. Its time depends on the number of clusters, not of objects.\n\n"
         "Args:\n"
         "    X_WT: (7,) pose of the tool [qw qx qy qz x y z], m.\n"
-        "    V_WT: (6,) its spatial velocity [rad/s; m/s].\n"
-        "    objects: where they are.\n"
-        "    materials: one for each of them.\n\n"
+        "    V_WT: (6,) spatial velocity of the tool [rad/s; m/s].\n"
+        "    objects: frames of the objects.\n"
+        "    materials: materials of the objects.\n\n"
         "Raises:\n"
         "    ValueError: there is not a material for each object.\n"
         "    IndexError: a cluster names an object that is not given.");
@@ -192,8 +192,8 @@ void BindForces(nb::module_& m) {
       },
       nb::arg("clusters"), nb::arg("p_WTo"), nb::arg("V_WT"), nb::arg("p_WO"),
       nb::arg("V_WO"), nb::arg("stiffness"), nb::arg("damping"),
-      "The same for what is asked once, from the arguments of `ObjectFrames` "
-      "and `ContactMaterials`; p_WTo (3,) is the tool's origin, m.\n\n"
+      "The same for a single call, from the arguments of `ObjectFrames` and "
+      "`ContactMaterials`; p_WTo (3,) is the tool's origin, m.\n\n"
       "Raises:\n"
       "    ValueError: a gain is negative or not finite, or rows do not "
       "match.\n"

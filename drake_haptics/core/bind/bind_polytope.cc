@@ -51,8 +51,8 @@ Polytope HullOf(const std::vector<Vec3>& vertices) {
   }
 }
 
-// A piece of a decomposition knows the surface around it, which its vertices do
-// not tell.
+// Whether P is the hull of its vertices alone. A piece of a decomposition also
+// holds the surface around it, which its vertices do not determine.
 bool IsOnItsOwn(const Polytope& P) {
   const Polytope hull = MakePolytope(P.vertices);
   const auto same_facet = [](const auto& f, const auto& g) {
@@ -98,8 +98,9 @@ void BindPolytope(nb::module_& m) {
           "Builds the hull of (n, 3) points, m. Coplanar triangles become one "
           "facet; points that are not extreme are dropped; sets that are flat, "
           "straight or a single point are valid.\n\n"
-          "Raises:\n    ValueError: no points, not finite, or 1e50 m and "
-          "beyond.")
+          "Raises:\n"
+          "    ValueError: there are no points, or one is not finite, or 1e50 "
+          "m and beyond.")
       .def_ro("dimension", &Polytope::dimension,
               "0 point, 1 segment, 2 flat polygon, 3 solid.")
       .def_prop_ro(

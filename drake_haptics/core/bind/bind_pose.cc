@@ -32,7 +32,7 @@ struct Source {
   throw std::invalid_argument(source.text() + " " + why);
 }
 
-// False if there is a NaN.
+// Whether R is orthonormal; false if there is a NaN.
 bool IsOrthonormal(const Mat3& R) {
   const Vec3 x = R.row(0), y = R.row(1), z = R.row(2);
   return std::abs(x.dot(x) - 1) <= kRigid && std::abs(y.dot(y) - 1) <= kRigid &&
@@ -45,7 +45,7 @@ bool IsRigid(const Pose& X) {
          (X.p.array().abs() < kFarthest).all();
 }
 
-// Says what is wrong with a matrix that is known to be no pose.
+// Throws with the reason why a matrix is not a pose.
 [[noreturn]] void RefuseMatrix(const Eigen::Matrix4d& X, const Source& source) {
   if (!X.allFinite()) Refuse(source, "holds a value that is not finite");
   if (X.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
@@ -91,8 +91,8 @@ Pose FromVector(const char* data, Py_ssize_t stride, const Source& source) {
   return PoseFromVector(q, source.text().c_str());
 }
 
-// Drake's RigidTransform is known by its interface, so that Drake need not be
-// there.
+// Drake's RigidTransform is recognized by its interface, so that Drake need not
+// be installed.
 nb::object AsMatrix(nb::handle value) {
   if (PyObject_CheckBuffer(value.ptr()) ||
       !nb::hasattr(value, "GetAsMatrix4")) {
@@ -141,7 +141,7 @@ PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
                         const char* name) {
   PoseVectorOf<AutoDiff> q;
   for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
-  PoseFromVector(ValuesOf(q), name);  // refuses what is not a pose
+  PoseFromVector(ValuesOf(q), name);  // throws unless it is a pose
   return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
 }
 
@@ -166,7 +166,7 @@ std::size_t CommonSize(const PoseSeries& X_WA, const PoseSeries& X_WB) {
   if (X_WA.at_rest()) return X_WB.size();
   if (!X_WB.at_rest() && X_WA.size() != X_WB.size()) {
     throw std::invalid_argument(
-        "X_WA and X_WB must have as many poses as each other, got " +
+        "X_WA and X_WB must have the same number of poses, got " +
         std::to_string(X_WA.size()) + " and " + std::to_string(X_WB.size()));
   }
   return X_WA.size();

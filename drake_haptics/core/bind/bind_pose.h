@@ -18,7 +18,8 @@ namespace drake_haptics {
 /// @throws std::invalid_argument unless it is one pose: finite and rigid.
 Pose ToPose(nanobind::handle value, const char* name);
 
-/// Pose i of several with derivatives, 7 numbers each, one after another.
+/// Pose i of poses with derivatives, stored one after another with 7 numbers
+/// each.
 /// @throws std::invalid_argument unless its values are a pose.
 PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
                         const char* name);
@@ -26,7 +27,7 @@ PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
 /// The poses of one body over a trajectory.
 class PoseSeries {
  public:
-  /// @throws std::invalid_argument unless all of it are poses.
+  /// @throws std::invalid_argument unless all items are poses.
   PoseSeries(nanobind::handle value, const char* name);
 
   bool at_rest() const { return at_rest_; }
@@ -40,7 +41,7 @@ class PoseSeries {
   std::vector<Pose> poses_;
 };
 
-/// How many poses a trajectory of two bodies has.
+/// Number of poses of a trajectory of two bodies.
 /// @throws std::invalid_argument if both move and their numbers differ.
 std::size_t CommonSize(const PoseSeries& X_WA, const PoseSeries& X_WB);
 

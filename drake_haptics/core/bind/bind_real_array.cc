@@ -13,7 +13,8 @@ bool IsNativeDouble(const Py_buffer& view) {
   return view.format != nullptr && std::strcmp(view.format, "d") == 0;
 }
 
-// Points `view` at the memory of an array of doubles; false for all else.
+// Points `view` at the memory of an array of doubles; returns false for
+// anything else.
 bool ViewDoubles(nb::handle value, Py_buffer* view) {
   if (!PyObject_CheckBuffer(value.ptr())) return false;
   if (PyObject_GetBuffer(value.ptr(), view, PyBUF_RECORDS_RO) != 0) {
@@ -25,7 +26,7 @@ bool ViewDoubles(nb::handle value, Py_buffer* view) {
   return false;
 }
 
-// By NumPy, from real numbers of any other kind: int, float32, lists.
+// Converts real numbers of any other kind by NumPy: int, float32, lists.
 nb::object ToDoubles(nb::handle value, const char* name) {
   const nb::module_ numpy = nb::module_::import_("numpy");
   try {
@@ -35,7 +36,7 @@ nb::object ToDoubles(nb::handle value, const char* name) {
       return numpy.attr("asarray")(array, "float64");
     }
   } catch (nb::python_error& error) {
-    // Ragged lists, for instance; an interrupt stays what it is.
+    // Ragged lists, for instance; an interrupt is passed on.
     if (!error.matches(PyExc_Exception)) throw;
   }
   throw std::invalid_argument(std::string(name) +
@@ -72,7 +73,7 @@ double ToReal(nb::handle value, const char* name) {
 }
 
 std::string TypeName(nb::handle value) {
-  // An array says more by its numbers than by its class.
+  // For an array, the type of its numbers says more than its class.
   if (nb::hasattr(value, "dtype")) {
     return std::string(nb::str(nb::object(value.attr("dtype"))).c_str()) +
            " values";

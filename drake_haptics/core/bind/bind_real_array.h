@@ -8,9 +8,9 @@
 /// Numbers that Python passes in, with errors that name the argument.
 namespace drake_haptics {
 
-/// Real numbers in an array of Python's. NumPy arrays of doubles are read where
-/// they are, whatever their strides; all else is converted by NumPy once. The
-/// view is for use within one call, while the GIL is held.
+/// Real numbers in an array of Python. NumPy arrays of doubles are read in
+/// place, whatever their strides; NumPy converts anything else once. The view
+/// is for use within one call, while the GIL is held.
 class RealArray {
  public:
   /// @param name the argument, for messages.

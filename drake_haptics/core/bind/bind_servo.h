@@ -7,8 +7,8 @@
 
 namespace drake_haptics {
 
-/// Other Python threads run while a name is looked up, and while the servo
-/// ends.
+/// A UdpServo at whose end other Python threads run. Its binding lets them run
+/// while a name is looked up, too.
 class PythonUdpServo : public UdpServo {
  public:
   using UdpServo::UdpServo;

@@ -57,22 +57,22 @@ void BindShading(nb::module_& m) {
   nb::class_<SurfaceShading>(
       m, "SurfaceShading",
       "The surface of a decomposed mesh with normals to interpolate over its "
-      "triangles (Gouraud): at each corner of a triangle the mean normal of "
-      "the triangles around the vertex that are reached across edges which "
-      "turn by less than the crease angle, weighted with their angles. "
-      "Immutable.\n\n"
+      "triangles (Gouraud): at each corner of a triangle the mean normal, "
+      "weighted by angles, of the triangles around the vertex that are reached "
+      "across edges which turn by less than the crease angle. Immutable.\n\n"
       "Pieces that were not made from triangles (methods \"hull\" and "
       "\"coacd\") keep the normals of their facets.")
       .def(nb::init<std::shared_ptr<const Decomposition>, double>(),
            nb::arg("decomposition"), nb::arg("crease_angle"),
-           "Finds the normals once; `crease_angle` in rad, 0 for facets as "
-           "they are.\n\n"
-           "Raises:\n    ValueError: crease_angle is not in [0, π].");
+           "Finds the normals once; `crease_angle` is in rad, 0 for the "
+           "facets' own normals.\n\n"
+           "Raises:\n"
+           "    ValueError: crease_angle is not in [0, π].");
   nb::class_<ContactShading>(
       m, "ContactShading",
       "Force shading of the contacts of a tool with objects (paper, 4.4.1; "
       "Morgenbesser and Srinivasan 1996): turns each normal to that of the "
-      "smooth surfaces that the meshes stand for, by 45° at most. Immutable.")
+      "smooth surfaces that the meshes approximate, by at most 45°. Immutable.")
       .def(
           "__init__",
           [](ContactShading* self, const ShadingPtr& tool,
@@ -85,14 +85,14 @@ void BindShading(nb::module_& m) {
           "Raises:\n    ValueError: an object is None.")
       .def("shade", &Shade, nb::arg("contacts"), nb::arg("q_WT"),
            nb::arg("q_WO"),
-           "The contacts with shaded normals; all else is as it was.\n\n"
+           "Returns the contacts with shaded normals, otherwise unchanged.\n\n"
            "Args:\n"
            "    contacts: `ContactSet` of a query at these poses.\n"
            "    q_WT: (7,) pose of the tool [qw qx qy qz x y z].\n"
            "    q_WO: (m, 7) poses of the objects.\n\n"
            "Raises:\n"
-           "    ValueError: not a pose, or not one for each object, or "
-           "a contact names no features, see `contact_set`.\n"
+           "    ValueError: a pose is not valid, there is not one for each "
+           "object, or a contact names no features, see `contact_set`.\n"
            "    IndexError: a contact names an object, piece or feature that "
            "does not exist.")
       .def("shade", &DifferentiateShade, nb::arg("contacts"), nb::arg("q_WT"),

@@ -8,7 +8,7 @@
 
 #include "mesh/decomposition.h"
 
-/// Shapes that Python passes in: a decomposition, or the core's one of it.
+/// Shapes that Python passes in: a Decomposition, or its core's ConvexPieces.
 namespace drake_haptics {
 
 using DecompositionPtr = std::shared_ptr<const Decomposition>;

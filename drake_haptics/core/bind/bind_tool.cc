@@ -80,33 +80,34 @@ void BindJoinedCoupling(nb::module_& m) {
         return ToVector(ComputeJoinedCoupling(joined, q_HT));
       },
       nb::arg("joined"), nb::arg("q_HT"),
-      "Wrenches of the virtual coupling between handle H and tool, of one "
-      "vector as a multiplexer joins it: an array that crosses takes as long "
-      "as the law.\n\n"
+      "Wrenches of the virtual coupling between handle H and tool, from one "
+      "vector as a multiplexer joins it: each array that is passed takes as "
+      "long as the law.\n\n"
       "Args:\n"
-      "    joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) "
-      "in the order of `CouplingGains`; poses [qw qx qy qz x y z], spatial "
-      "velocities [rad/s; m/s].\n"
-      "    q_HT: (7,) the tool's place in the handle.\n\n"
+      "    joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the "
+      "order of `CouplingGains`; poses [qw qx qy qz x y z], spatial velocities "
+      "[rad/s; m/s].\n"
+      "    q_HT: (7,) pose of the tool in the handle.\n\n"
       "Returns:\n"
       "    (84,): wrench model on the tool at To (78), then the reaction on "
       "the handle at Ho in W (6).\n\n"
-      "Raises:\n    ValueError: a gain is out of range.");
+      "Raises:\n"
+      "    ValueError: a gain is out of range.");
   m.def(
       "joined_coupling_wrench",
       [](const AutoDiffVector& joined, const PoseVector& q_HT) {
         const auto in = ToScalars<32>(joined, "joined");
         if (!joined.gradient.bottomRows<6>().isZero(0.0)) {
           throw std::invalid_argument(
-              "joined must have no derivatives of the gains: the coupling has "
-              "none by them");
+              "joined must have no derivatives of the gains: the coupling is "
+              "not differentiated by them");
         }
         return ToAutoDiffVector(
             ToVector(CoupleJoined<AutoDiff>(in, q_HT, GainsOf(joined.value))),
             joined.num_derivatives());
       },
       nb::arg("joined"), nb::arg("q_HT"),
-      "The same with derivatives, but by the gains.");
+      "The same with derivatives by all but the gains.");
 }
 
 nb::tuple ToTuple(const CouplingGains& gains) {
@@ -118,9 +119,9 @@ nb::tuple ToTuple(const CouplingGains& gains) {
 void BindCoupling(nb::module_& m) {
   nb::class_<CouplingGains> gains(
       m, "CouplingGains",
-      "Spring and damper of the virtual coupling, and the most they pull with "
-      "together, force and torque each by its norm. Immutable, and equal where "
-      "all numbers are.");
+      "Gains of the virtual coupling's spring and damper, and the largest "
+      "norms of the force and torque of both together. Immutable; equal if all "
+      "numbers are.");
   DefFrozenCopy(&gains);
   gains
       .def(
@@ -187,7 +188,8 @@ void BindRigidTool(nb::module_& m) {
       .def_prop_ro(
           "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
           "Center of mass (3,) in the tool's frame, m.")
-      // First what each tick calls: to try another takes as long as the step.
+      // The overload that each tick calls is first: trying another takes as
+      // long as the step.
       .def(
           "step",
           [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
@@ -237,8 +239,8 @@ void BindLimit(nb::module_& m) {
       "Shortens torque and force of a wrench (6,), [N·m; N], each to its "
       "limit, along its own direction.\n\n"
       "Returns:\n"
-      "    (7,): the wrench and what became of it: 0 as asked, 1 at a limit, 2 "
-      "not finite, for which it is zero.\n\n"
+      "    (7,): the limited wrench and a number: 0 if it is unchanged, 1 if "
+      "it was limited, 2 if it was not finite and is zero.\n\n"
       "Raises:\n"
       "    ValueError: a limit is negative or not finite.");
 }

@@ -36,7 +36,7 @@ ContactTracker PosedTracker(DecompositionPtr tool,
   return tracker;
 }
 
-// One tick after the other, each timed.
+// Runs one tick after the other, and times each.
 Run RunToolLoop(ToolLoop* loop, double tolerance, const States& handle,
                 const Eigen::Matrix<double, 13, 1>& start) {
   const Eigen::Index n = handle.rows();
@@ -84,24 +84,28 @@ void BindToolLoop(nb::module_& m) {
       nb::arg("tolerance"), nb::arg("dynamics"), nb::arg("gains"),
       nb::arg("q_HT"), nb::arg("stiffness"), nb::arg("damping"), nb::arg("h"),
       nb::arg("handle"), nb::arg("start"),
-      "What a haptic loop without effects computes, tick after tick, without "
-      "Drake and without the GIL: query, shared stiffness, penalty force, "
-      "coupling, and the tool's implicit step.\n\n"
+      "Computes a haptic loop without effects, tick after tick, without Drake "
+      "and without the GIL: query, shared stiffness, penalty force, coupling, "
+      "and the tool's implicit step.\n\n"
       "Args:\n"
-      "    tool, objects: their pieces; the objects rest.\n"
+      "    tool, objects: pieces of the tool and of each object; the objects "
+      "rest.\n"
       "    q_WO: (m, 7) poses [qw qx qy qz x y z] of the objects.\n"
-      "    tolerance: contacts up to this distance push, m.\n"
-      "    dynamics, gains, q_HT: of the tool and its coupling.\n"
-      "    stiffness, damping: of every contact, N/m and N·s/m.\n"
-      "    h: the tick, s.\n"
+      "    tolerance: distance up to which contacts push, m.\n"
+      "    dynamics, gains, q_HT: inertia of the tool, gains of its coupling, "
+      "and its pose (7,) in the handle.\n"
+      "    stiffness, damping: gains of every contact, N/m and N·s/m.\n"
+      "    h: duration of a tick, s.\n"
       "    handle: (n, 13) pose (7) and spatial velocity (6) of the handle at "
       "each tick.\n"
-      "    start: (13,) the same of the tool before the first tick.\n\n"
+      "    start: (13,) pose and spatial velocity of the tool before the first "
+      "tick.\n\n"
       "Returns:\n"
-      "    The tool's state (n, 13) after each tick; contacts (n,) and the "
-      "smallest distance (n,), m, at its beginning, the tolerance where there "
-      "is none; and the time (n,) that it took, s.\n\n"
-      "Raises:\n    ValueError: poses or gains are out of range.");
+      "    The tool's state (n, 13) after each tick; the number of contacts "
+      "(n,) and the smallest distance (n,), m, at its beginning, the tolerance "
+      "without contacts; and the time (n,) that the tick took, s.\n\n"
+      "Raises:\n"
+      "    ValueError: poses or gains are out of range.");
 }
 
 }  // namespace drake_haptics

@@ -21,20 +21,21 @@
 
 namespace nb = nanobind;
 
-// What both trackers' constructors say of the arguments that they share.
-#define DRAKE_HAPTICS_DEPTH_ARGUMENTS                                        \
-  "Args:\n"                                                                  \
-  "    depth: Of two pieces in overlap: `tracked` walks from the last "      \
-  "answer, and so does not pop through a thin plate; `global` is the least " \
-  "way out over any feature that both surfaces have, and costs more. What "  \
-  "has passed behind a surface is held by the way in either way.\n"          \
-  "    max_walk_steps: Bound on the steps of a walk from feature to "        \
-  "feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is " \
+// Documentation of the arguments that both trackers' constructors share.
+#define DRAKE_HAPTICS_DEPTH_ARGUMENTS                                         \
+  "Args:\n"                                                                   \
+  "    depth: Depth of two pieces in overlap: `tracked` walks from the last " \
+  "answer, and so does not pop through a thin plate; `global` is the "        \
+  "smallest depth over all features of both surfaces, and costs more. Both "  \
+  "hold a piece that has passed behind a surface until it comes back.\n"      \
+  "    max_walk_steps: Bound on the steps of a walk from feature to "         \
+  "feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is "  \
   "`BOUNDED`, and the depth may be too large, never too small.\n\n"
 
 namespace drake_haptics {
 
-// The public Decomposition holds the core's one as its attribute `core`.
+// The public Decomposition holds the core's Decomposition as its attribute
+// `core`.
 DecompositionPtr ToDecomposition(nb::handle value, const std::string& name) {
   DecompositionPtr decomposition;
   const nb::object core = nb::getattr(value, "core", value);
@@ -49,7 +50,7 @@ std::vector<DecompositionPtr> ToDecompositions(nb::handle values) {
   if (!PySequence_Check(values.ptr()) || nb::len(values) == 0) {
     throw std::invalid_argument(
         "objects must be a list of one Decomposition or more, got " +
-        (PySequence_Check(values.ptr()) ? std::string("none of them")
+        (PySequence_Check(values.ptr()) ? std::string("an empty one")
                                         : TypeName(values)));
   }
   std::vector<DecompositionPtr> decompositions;
@@ -123,7 +124,7 @@ SceneTracker::SceneTracker(nb::handle tool, nb::handle objects,
 
 void SceneTracker::SetObjectPose(nb::handle place, nb::handle X_WO_value) {
   const Pose X_WO = ToPose(X_WO_value, "X_WO");
-  // By `__index__`, as lists do: NumPy's integers count.
+  // Through `__index__`, as lists do, so that NumPy's integers are accepted.
   const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
   if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
   const Py_ssize_t size = tracker_.num_objects();
@@ -192,16 +193,17 @@ void BindContactTrajectory(nb::module_& m) {
   DefFrozenCopy(&trajectory);
 }
 
-// What both trackers have.
+// Defines the members that both trackers have.
 template <typename Tracker>
 void DefTracker(nb::class_<Tracker>* tracker) {
   tracker
       ->def_prop_rw(
           "tolerance", &Tracker::Tolerance, &Tracker::SetTolerance,
           nb::arg("tolerance").none(),
-          "Distance up to which there are contacts, m. May be changed between "
-          "two queries: what was learnt is kept.\n\n"
-          "Raises:\n    ValueError: negative or not finite.")
+          "Distance up to which there are contacts, m. It may be changed "
+          "between two queries; the tracker goes on from its last answer.\n\n"
+          "Raises:\n"
+          "    ValueError: negative or not finite.")
       .def_prop_ro(
           "depth",
           [](const Tracker& self) {
@@ -226,11 +228,11 @@ void BindContactTracker(nb::module_& m) {
       "All contacts of two decomposed bodies A and B, each query starting from "
       "the last one's answer (paper, sections 3 and 5.3): one for each pair of "
       "convex pieces nearer than the tolerance. Seams between pieces are not "
-      "felt, and what has been pressed in stays in contact, out the way it "
-      "came.\n\n"
+      "felt, and a piece that was pressed in stays in contact until it comes "
+      "out the way it went in.\n\n"
       "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
-      "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
-      "as it is. Threads that share a tracker take turns.");
+      "[qw qx qy qz x y z]; lengths in m. A ValueError leaves the tracker as "
+      "it was. Threads that share a tracker take turns.");
   tracker
       .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle,
                     nb::handle>(),
@@ -244,7 +246,7 @@ void BindContactTracker(nb::module_& m) {
                    "Decomposition | ConvexPieces, tolerance: "
                    "float, depth: typing.Literal['tracked', 'global'] = "
                    "'tracked', max_walk_steps: int = 1024) -> None"),
-           "Watches A against B for contacts up to `tolerance` "
+           "Tracks the contacts of A and B up to `tolerance` "
            "(m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
            "Raises:\n    ValueError: not decompositions, the tolerance is "
            "negative or not finite, no such depth, or max_walk_steps below 1.")
@@ -261,13 +263,14 @@ void BindContactTracker(nb::module_& m) {
                "def query_trajectory(self, X_WA: "
                "drake_haptics.common.pose_like.PoseLike, X_WB: "
                "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
-           "What k single queries would give, in one call without the GIL.\n\n"
+           "Contacts of k queries in turn, in one call without the GIL.\n\n"
            "Args:\n"
            "    X_WA: (k, 4, 4) or (k, 7) poses of A in turn, or one pose if A "
            "rests.\n"
-           "    X_WB: the same of B.\n\n"
-           "Raises:\n    ValueError: a pose is not finite or not rigid, or "
-           "numbers of poses differ; nothing was asked then.")
+           "    X_WB: poses of B, likewise.\n\n"
+           "Raises:\n"
+           "    ValueError: a pose is not finite or not rigid, or numbers of "
+           "poses differ; then no query is made.")
       .def("__repr__", [](const PairTracker& self) {
         return nb::str("ContactTracker(tolerance={} m)")
             .format(self.Tolerance());
@@ -278,9 +281,9 @@ void BindContactTracker(nb::module_& m) {
 void BindSceneTracker(nb::module_& m) {
   nb::class_<SceneTracker> tracker(
       m, "SceneTracker",
-      "All contacts of a moving tool with many objects at once; else a "
-      "`ContactTracker`, A the tool and B each object. Objects are posed one "
-      "by one and stay there, so that those at rest cost nothing.");
+      "All contacts of a moving tool with many objects at once: a "
+      "`ContactTracker` in which A is the tool and B each object. Objects are "
+      "posed one by one and stay there, so that those at rest cost nothing.");
   tracker
       .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle,
                     nb::handle>(),
@@ -295,8 +298,8 @@ void BindSceneTracker(nb::module_& m) {
                    "ConvexPieces], tolerance: float, depth: typing.Literal["
                    "'tracked', 'global'] = 'tracked', max_walk_steps: int = "
                    "1024) -> None"),
-           "Watches `tool` against `objects`, all at the identity pose, for "
-           "contacts up to `tolerance` (m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
+           "Tracks the contacts of `tool` with `objects`, all at the identity "
+           "pose, up to `tolerance` (m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
            "Raises:\n    ValueError: not decompositions, no objects, the "
            "tolerance is negative or not finite, no such depth, or "
            "max_walk_steps below 1.")
@@ -316,22 +319,24 @@ void BindSceneTracker(nb::module_& m) {
            nb::sig("def query(self, X_WT: "
                    "drake_haptics.common.pose_like.PoseLike, "
                    "tolerance: float | None = None) -> ContactSet"),
-           "`ContactSet` of the tool at the pose X_WT. With a `tolerance` "
-           "(m) smaller than the tracker's only of contacts up to that, for "
-           "less work; the next query may ask for another.\n\n"
-           "Raises:\n    ValueError: the pose is not finite or not rigid, or "
-           "the tolerance not within 0 and the tracker's.")
+           "`ContactSet` of the tool at the pose X_WT. A `tolerance` (m) "
+           "smaller than the tracker's limits the query to contacts up to "
+           "that, for less work; each query may have its own.\n\n"
+           "Raises:\n"
+           "    ValueError: the pose is not finite or not rigid, or the "
+           "tolerance not within 0 and the tracker's.")
       .def("query_trajectory", &SceneTracker::QueryTrajectory,
            nb::arg("X_WT").none(),
            nb::sig(
                "def query_trajectory(self, X_WT: "
                "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
-           "What k single queries would give, in one call without the GIL; the "
+           "Contacts of k queries in turn, in one call without the GIL; the "
            "objects rest.\n\n"
            "Args:\n"
            "    X_WT: (k, 4, 4) or (k, 7) poses of the tool in turn.\n\n"
-           "Raises:\n    ValueError: a pose is not finite or not rigid; "
-           "nothing was asked then.")
+           "Raises:\n"
+           "    ValueError: a pose is not finite or not rigid; then no query "
+           "is made.")
       .def("__repr__", [](const SceneTracker& self) {
         return nb::str("SceneTracker({}, tolerance={} m)")
             .format(Counted(self.constants().num_objects(), "object"),

@@ -11,7 +11,7 @@
 #include "bind/bind_turn.h"
 #include "tracker/contact_tracker.h"
 
-/// Trackers as Python has them, which several threads may share.
+/// Trackers of the Python module, which several threads may share.
 namespace drake_haptics {
 
 /// The contacts at each pose of a trajectory, one pose after the other.
@@ -39,7 +39,7 @@ class SharedTracker {
       : tracker_(std::move(tracker)) {}
   SharedTracker(const SharedTracker& other) : SharedTracker(other.Copy()) {}
 
-  /// For what never changes.
+  /// For members that never change.
   const ContactTracker& constants() const { return tracker_; }
 
   double Tolerance() const {
@@ -79,7 +79,7 @@ class SharedTracker {
 
   mutable std::mutex mutex_;
   ContactTracker tracker_;
-  long changes_ = 0;  // of what is watched or known, by other than a query
+  long changes_ = 0;  // changes of the tracker other than by a query
 };
 
 /// A moving tool and many objects.

@@ -15,8 +15,8 @@ inline double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Calls step(k) for k from 0 to count - 1. Lets an interrupt through between
-/// two steps, ten times a second.
+/// Calls step(k) for k from 0 to count - 1. Checks for interrupts between
+/// steps, ten times a second.
 template <typename Step>
 void RunTrajectory(std::size_t count, const Step& step) {
   Clock::time_point checked = Clock::now();

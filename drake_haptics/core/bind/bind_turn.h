@@ -5,18 +5,19 @@
 #include <mutex>
 #include <optional>
 
-/// Objects that remember something between calls, used from several Python
-/// threads: the calls take turns.
+/// Objects with a state between calls, used from several Python threads: the
+/// calls take turns.
 namespace drake_haptics {
 
-/// Takes a turn for as long as it lives. Nobody waits for a turn while holding
-/// the GIL, so that who has the turn can always get it.
+/// Takes a turn for as long as it lives. No thread waits for a turn while
+/// holding the GIL, so that the thread that has the turn can always get the
+/// GIL.
 class Turn {
  public:
   enum class Gil {
     kRelease,  ///< other threads run meanwhile
-    /// For calls that last a tick at most: a busy Python thread takes the GIL
-    /// that is let go, and keeps it for Python's switch interval, 5 ms.
+    /// For calls that last a tick at most: a busy Python thread takes a
+    /// released GIL and keeps it for Python's switch interval, 5 ms.
     kHold
   };
 
@@ -27,7 +28,7 @@ class Turn {
   }
 
  private:
-  // The turn ends before the GIL is asked for again: reverse order.
+  // Destroyed in reverse order: the turn ends before the GIL is acquired again.
   std::optional<nanobind::gil_scoped_release> release_;
   std::unique_lock<std::mutex> lock_;
 };

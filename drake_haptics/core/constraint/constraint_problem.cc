@@ -7,20 +7,20 @@
 namespace drake_haptics {
 namespace {
 
-// A step that changes the motion by less than this share, or by a millionth of
-// an atom, ends the search.
+// The search ends at a step that is no longer than this share of the motion and
+// a millionth of an atom.
 constexpr double kRelativeStep = 1e-12;
 constexpr double kStep = 1e-16;  // m, and rad
 
-// What a spring adds to the Hessian at a shortfall x: nothing where it rests or
-// is at its limit.
+// Stiffness that a spring adds to the Hessian at a shortfall x: zero where it
+// rests or is at its limit.
 double Slope(const OneSidedSpring& spring, double x) {
   return x > 0 && spring.k * x < spring.limit ? spring.k : 0.0;
 }
 
-// Where along start + s · step the function is least, for s in [0, 1]: the
-// slope grows along the line, bent at the kinks. A spring bends it where it
-// begins to push and where it comes to its limit.
+// Returns the s in [0, 1] at which the function is least along
+// start + s · step. Its slope rises along the line, with kinks where a spring
+// begins to push or reaches its limit.
 double LineMinimum(const ConstraintProblem& problem, const Vec6& start,
                    const Vec6& step, const Vec6& gradient,
                    ConstraintWorkspace* workspace) {
@@ -34,7 +34,7 @@ double LineMinimum(const ConstraintProblem& problem, const Vec6& start,
     const double x = spring.b - spring.a.dot(start);
     const double full = spring.limit / spring.k;
     const double change = spring.k * rise * rise;
-    // x falls along the line where the step rises along a.
+    // Along the line x falls if the step rises along a.
     const double first = rise > 0 ? full : 0.0;
     const double last = rise > 0 ? 0.0 : full;
     const double begin = (x - first) / rise, end = (x - last) / rise;

@@ -15,14 +15,15 @@ struct OneSidedSpring {
   double k = 0;                                            ///< N/m
   double limit = std::numeric_limits<double>::infinity();  ///< N
 
-  /// λ at a motion, N.
+  /// Force λ at a motion, N.
   double Force(const Vec6& motion) const {
     const double force = k * (b - a.dot(motion));
     return force > 0 ? (force < limit ? force : limit) : 0;
   }
 };
 
-/// The motion ξ of a body in a tick under a quadratic and one-sided springs:
+/// The problem that the motion ξ of a body in a tick solves, with a quadratic
+/// and one-sided springs:
 ///
 ///   min_ξ  ½ ξᵀ H ξ − rᵀ ξ + Σ φ_i(b_i − a_iᵀ ξ),
 ///
@@ -42,20 +43,20 @@ struct ConstraintSolution {
   /// H + Σ k a aᵀ over the springs that push with less than their limit.
   Mat6 hessian = Mat6::Zero();
   int num_iterations = 0;
-  bool is_bounded = false;  ///< the bound on iterations was met
+  bool is_bounded = false;  ///< the bound on iterations was reached
 };
 
 /// Buffers, kept between solutions so that a warm one allocates nothing.
 struct ConstraintWorkspace {
   struct Kink {
     double place = 0;   ///< along the search direction, 1 at its end
-    double change = 0;  ///< of the slope's slope
+    double change = 0;  ///< change of the second derivative
   };
   std::vector<Kink> kinks;
   std::vector<double> rises;  ///< of each spring's aᵀ ξ along the direction
 };
 
-/// Far more than problems have been seen to need.
+/// Bound on iterations, far above those that problems were seen to need.
 inline constexpr int kMaxNewtonIterations = 64;
 
 /// Solves the problem by Newton's method with an exact line search: the
@@ -63,7 +64,7 @@ inline constexpr int kMaxNewtonIterations = 64;
 /// is piecewise linear, and between its kinks each step is exact. So it ends
 /// after finitely many steps, in most ticks one to three (Mangasarian, "A
 /// finite Newton method for classification", 2002). Springs that are alike,
-/// opposed or redundant need no care.
+/// opposed or redundant need no special care.
 /// @param start where the search begins.
 ConstraintSolution SolveConstraintProblem(
     const ConstraintProblem& problem, const Vec6& start,

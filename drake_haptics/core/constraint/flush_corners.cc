@@ -11,8 +11,8 @@ namespace {
 constexpr double kFlushSine = 0.1;
 const double kFlushCosine = std::sqrt(1 - kFlushSine * kFlushSine);
 
-// The facet at a vertex that faces along a unit direction best; -1 where none
-// is flush with its plane.
+// Returns the facet at a vertex that best faces along a unit direction; -1 if
+// none is flush with the plane across it.
 int FlushFacet(const Polytope& P, int vertex, const Vec3& outward) {
   int best = -1;
   double largest = kFlushCosine;
@@ -77,8 +77,8 @@ class Corners {
     }
   }
 
-  // Edges that are not quite parallel are not above each other: each end of the
-  // overlap has its nearest point.
+  // Edges that are not quite parallel do not lie above each other, so each end
+  // of the overlap is paired with its nearest point.
   void OfEdges(int edge_A, int edge_B) {
     const Segment a = EdgeOfA(edge_A), b = EdgeOfB(edge_B);
     const double sine_squared = a.along.cross(b.along).squaredNorm() /

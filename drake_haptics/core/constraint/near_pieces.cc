@@ -62,7 +62,7 @@ void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
   mark_ = std::min(mark_, front_.mark());
 }
 
-// Asks a pair that may be within reach. Returns whether it stays under watch.
+// Queries a pair that may be within reach. Returns whether it stays watched.
 bool NearPieces::Update(const Tick& tick, const BvttFront::Tick& front_tick,
                         PairWorkspace* workspace, WatchedPair* pair,
                         PairContact* contact, bool* is_near) {

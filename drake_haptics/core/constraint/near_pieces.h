@@ -11,40 +11,40 @@
 
 namespace drake_haptics {
 
-/// A plane between two convex pieces: A is in front of it by the distance, B
-/// behind it. Any motion of A that keeps it so keeps the pieces apart.
+/// A plane between two convex pieces: A is in front of it by the distance, B is
+/// behind it. Any motion that keeps them on these sides keeps them apart.
 struct SeparatingPlane {
-  /// The distance along n, the points between which it is measured, and the
-  /// supports; of pieces that overlap the depth. In A's frame.
+  /// Distance along n (minus the depth in overlap), witness points and support
+  /// vertices, in A's frame.
   PairContact contact;
   PiecePair pieces;
   int object = 0;
-  /// The pair's place among those of its object; -1 for what a tracker found
-  /// where the bodies overlap.
+  /// Index of the pair among those of its object; -1 for a contact of the
+  /// tracker that is queried in overlap.
   int watched = -1;
-  double nearest = 0;  ///< distance of the pieces, m, which turning keeps
+  double nearest = 0;  ///< distance of the pieces, m; kept by turning
   double least = 0;    ///< smallest distance of the object's pairs, m
-  /// Vertices that support the pair where the tool will be; of a plane that was
-  /// not turned those that do now.
+  /// Support vertices of the pair where the tool will be; of a plane that was
+  /// not turned those where it is.
   MinkowskiVertex next_support;
-  double turned = 0;  ///< share of the way that it was turned last
+  double turned = 0;  ///< share of the way that its last turn went
 };
 
-/// The pairs of convex pieces of a tool (A) and an object (B) that are within
-/// reach, from tick to tick: pieces whose boxes are far apart cost nothing
-/// (bvtt_front.h), and of two that are near, an odometer tells when they have
-/// to be looked at again. That of a piece near the middle of A, about which A
-/// turns, counts less than A's. Every pair counts, whatever of its features
-/// lies on the meshes' surfaces: a piece inside a solid is a valid constraint
-/// for as long as the solids are apart. Copies are independent.
+/// Tracks the pairs of convex pieces of a tool (A) and an object (B) that are
+/// within reach from tick to tick: pieces whose boxes are far apart cost
+/// nothing (bvtt_front.h), and an odometer tells when a near pair must be
+/// queried again. The odometer of a piece near the middle of A, about which A
+/// turns, counts less than A's. Every pair counts, whether or not its features
+/// lie on the meshes' surfaces: a piece inside a solid is a valid constraint as
+/// long as the solids are apart. Copies are independent.
 class NearPieces {
  public:
   struct Tick {
     const TreedShape& tool;
     const Pose& X_AB;
-    double odometer;  ///< how far A's points have gone in B, at most, m
-    double turned;    ///< how far A has turned in B, rad: part of that
-    double reach;     ///< pairs up to this distance are wanted, m
+    double odometer;  ///< bound on the motion of A's points in B, m
+    double turned;    ///< rotation of A in B, rad; contained in the odometer
+    double reach;     ///< distance up to which pairs are found, m
   };
 
   explicit NearPieces(TreedShape shape) : shape_(std::move(shape)) {}
@@ -53,8 +53,8 @@ class NearPieces {
   void Query(const Tick& tick, PairWorkspace* workspace,
              std::vector<SeparatingPlane>* planes);
 
-  /// The odometer's reading plus the distance of what is not within reach: no
-  /// other pair is nearer than this less the reading, m.
+  /// The odometer's reading plus the distance of the pairs beyond the reach, m:
+  /// later they are no nearer than this less the reading.
   double mark() const { return mark_; }
 
   const Decomposition& shape() const { return *shape_.decomposition; }
@@ -68,7 +68,7 @@ class NearPieces {
             shape_.decomposition->pieces[pieces.b], X_AB};
   }
 
-  /// Where the next search of a pair's closest points begins.
+  /// Simplex from which the next search of a pair's closest points begins.
   const SimplexVertexPairs& simplex(int watched) const {
     return watched_[watched].state.simplex;
   }
@@ -78,9 +78,9 @@ class NearPieces {
  private:
   struct WatchedPair {
     PiecePair pieces;
-    int node = 0;      // in the front
-    double inner = 0;  // what A's radius is larger than the piece's, m
-    double mark = 0;   // its odometer's reading plus the distance, then known
+    int node = 0;      // node of the front
+    double inner = 0;  // A's radius less the piece's, m
+    double mark = 0;   // odometer plus distance at the last query, m
     PairState state;
 
     double Reading(const Tick& tick) const {
@@ -94,7 +94,7 @@ class NearPieces {
 
   TreedShape shape_;
   BvttFront front_;
-  std::vector<WatchedPair> watched_;  // as they entered
+  std::vector<WatchedPair> watched_;  // in no fixed order
   std::vector<EnteredPair> entered_;
   double mark_ = 0;
 };

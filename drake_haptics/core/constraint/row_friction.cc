@@ -14,11 +14,13 @@ namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
-// An anchor is fitted to what its rows keep. Along motions that displace no
-// row, as of a tool that rolls, nothing is kept; by this share it is damped.
+// Damping of the fit of an anchor to its rows' displacements, as a share of
+// their stiffness. Motions that displace no row, such as rolling, are
+// forgotten.
 constexpr double kForgotten = 1e-9;
 
-// The motion of the place of a row in its tangent plane by that of To.
+// Jacobian of the motion of a row's point in its tangent plane by the motion of
+// To.
 Jacobian TangentMotion(const RubbingRow& row) {
   const Vec3& r = row.r;
   Jacobian J;
@@ -62,7 +64,7 @@ void RowFriction::Begin(const std::vector<double>& state) {
   }
 }
 
-// What the anchors become under the rows' normal forces.
+// Updates the anchors for the rows' normal forces.
 void RowFriction::Load(const std::vector<RubbingRow>& rows) {
   for (Anchor& anchor : anchors_) anchor.normal_force = 0;
   for (const RubbingRow& row : rows) {

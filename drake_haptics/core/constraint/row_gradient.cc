@@ -9,15 +9,16 @@
 namespace drake_haptics {
 namespace {
 
-// A point so near to a feature lies on it, as a share of the piece's size.
+// Distance from a feature within which a point lies on it, as a share of the
+// piece's size.
 constexpr double kOnFeature = 1e-9;
-// Facets are flat within a tolerance.
+// Likewise for facets, which are flat within a tolerance.
 constexpr double kOnFacet = 2e-6;
-// Directions that are nearly one do not fix a place.
+// Directions that are more nearly parallel do not fix a point.
 constexpr double kParallel = 1e-6;
 
-// The directions in which a point may move on the smallest feature of a piece
-// that it lies on; none where it lies on a vertex, or on nothing.
+// Directions in which a point may move on the smallest feature of a piece that
+// it lies on; empty on a vertex and off the surface.
 std::vector<Vec3> DirectionsAt(const Polytope& P, const Vec3& p) {
   const double near = kOnFeature * P.radius;
   for (const Vec3& vertex : P.vertices) {
@@ -40,8 +41,8 @@ std::vector<Vec3> DirectionsAt(const Polytope& P, const Vec3& p) {
   return {};
 }
 
-// Where B supports a row: at its point, or, where that is beside B, as of a
-// plane that was turned, at the vertex of the same height.
+// Point at which B supports a row: the row's point or, if that is beside B, as
+// of a turned plane, the nearest vertex at the same height.
 Vec3 PointOfB(const Polytope& B, const Vec3& p, const Vec3& n) {
   const double near = kOnFeature * B.radius;
   if (std::all_of(B.facets.begin(), B.facets.end(), [&](const auto& facet) {
@@ -96,7 +97,7 @@ MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
       PointOfB(B, X_WO.inverse() * row.p_WCb, X_WO.R.transpose() * row.n);
   std::vector<Vec3> along_A = DirectionsAt(tool.shape->pieces[pieces.a], p_a);
   std::vector<Vec3> along_B = DirectionsAt(B, p_b);
-  // Two conditions place the points: the one on the smaller feature rests.
+  // Two conditions fix the points, so the one on the smaller feature rests.
   if (along_A.size() + along_B.size() > 2) {
     (along_B.size() < along_A.size() ? along_B : along_A).clear();
   }
@@ -104,8 +105,8 @@ MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
   moving.n = n;
   moving.p_WCa = tool.X_WB * Vec3Of<AutoDiff>(p_a.cast<AutoDiff>());
   moving.p_WCb = object.X_WB * Vec3Of<AutoDiff>(p_b.cast<AutoDiff>());
-  // By what they are no longer opposite each other, and how they make up for
-  // it.
+  // Offset by which the points are no longer opposite each other, and the
+  // slides that remove it.
   const Vec3Of<AutoDiff> gap = moving.p_WCa - moving.p_WCb;
   Vec3Of<AutoDiff> off = gap - n * AutoDiff(n.dot(gap));
   SetValues(Vec3::Zero(), &off);
@@ -137,7 +138,7 @@ MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
   const Vec3Of<AutoDiff> arm = moving.p_WCa - tool.X_WB.p;
   moving.a << arm.cross(n), n;
   SetValues(row.a, &moving.a);
-  // What pushes is on one line with the normal.
+  // The forces on both bodies act on one line along the normal.
   moving.p_WCb = moving.p_WCa - moving.distance * n;
   return moving;
 }

@@ -7,12 +7,12 @@
 
 namespace drake_haptics {
 
-/// The pose itself.
+/// The pose without its derivatives.
 Pose ValuesOf(const PoseOf<AutoDiff>& X);
 
-/// The contact of two pieces with derivatives, while features stay
+/// Contact of two pieces with derivatives, for fixed features
 /// (frozen_features.h).
-/// @param contact in the tool's frame, where tool and object are posed.
+/// @param contact contact in the tool's frame, at the poses of tool and object.
 ContactOf<AutoDiff> DifferentiatePieces(const PairContact& contact,
                                         const PiecePair& pieces,
                                         const DisplacedShape& tool,
@@ -25,11 +25,11 @@ struct MovingRow {
   Vec3Of<AutoDiff> n, p_WCa, p_WCb;
 };
 
-/// How a row moves with its bodies: each of its points along the vertex, edge
-/// or facet that it lies on, so that they stay opposite each other. Where both
-/// are inside of facets, they stay with A.
-/// @param n normal of its plane.
-/// @param tool, object posed where the row was found.
+/// Differentiates a row by the motion of its bodies: each of its points moves
+/// along the vertex, edge or facet that it lies on, so that the points stay
+/// opposite each other. If both are inside facets, they stay with A.
+/// @param n normal of the row's plane.
+/// @param tool, object bodies at the poses at which the row was found.
 MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
                            const Vec3Of<AutoDiff>& n,
                            const DisplacedShape& tool,

@@ -4,27 +4,27 @@
 
 namespace drake_haptics {
 
-/// At so much, m/s, a row leads back into its skin.
+/// Speed at which a row leads back into its skin, m/s.
 inline constexpr double kBackSpeed = 0.02;
 
-/// What the springs of a row demand of a motion ξ: they push where aᵀ ξ is
-/// less.
+/// Lower limits on aᵀ ξ, for a motion ξ, below which the springs of a row push.
 ///
-/// Apart, a row does not come nearer than its skin, or than it is: the tick's
-/// beginning meets that wherever the object does not come closer, so that a
-/// hard row never pushes by itself. What is missing of the skin, and what an
-/// object comes closer by, a second spring makes up for. In overlap there is
-/// that one alone, and weak.
+/// A row of separate pieces must not come nearer than its skin, or than it is.
+/// The tick's beginning meets this unless the object comes closer, so that a
+/// hard row never pushes by itself. A second spring makes up for lost skin and
+/// for the object's approach. In overlap there is only the second spring, and
+/// it is weak.
 template <typename T>
 struct RowLimits {
-  T kept;    ///< of the spring that holds, m
-  T wanted;  ///< of the one that leads back, m
+  T kept;    ///< limit of the spring that holds, m
+  T wanted;  ///< limit of the spring that leads back, m
 
-  /// @param distance of the row, m.
-  /// @param nearest distance of its pieces, m: of a plane that was turned they
-  ///     are farther than it tells.
-  /// @param closer what the object's point comes closer by in the tick, m.
-  /// @param back the most that the second spring makes up for in a tick, m.
+  /// @param distance distance of the row, m.
+  /// @param nearest distance of its pieces, m; larger than the row's if the
+  ///     plane was turned.
+  /// @param closer approach of the object's point in the tick, m.
+  /// @param back largest distance that the second spring makes up for in a
+  ///     tick, m.
   RowLimits(const T& distance, const T& nearest, const T& closer, double skin,
             double back) {
     const T missing = skin - (distance < nearest ? nearest : distance);

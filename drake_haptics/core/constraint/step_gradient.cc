@@ -80,7 +80,8 @@ class ConstraintStepper::Derivation final : public Follower {
     const ToolMotionTermsOf<AutoDiff> terms =
         ComputeMotionTerms(settings.inertia, tick.state);
     const Mat6Of<AutoDiff>& B = coupling.tool.B;
-    // Where it yields: of what StepFrom projects, the symmetric part.
+    // A yielding coupling's K is not symmetric: the derivative is that of its
+    // symmetric part, which StepFrom projects.
     const Mat6Of<AutoDiff> K =
         0.5 * (coupling.tool.K + coupling.tool.K.transpose());
     H_ = terms.M / (h_ * h_) + B / h_ + K;
@@ -152,7 +153,7 @@ class ConstraintStepper::Derivation final : public Follower {
   }
 
  private:
-  // A spring that pushes, and how what it demands changes.
+  // A spring that pushes, with the derivatives of its row and its limit b.
   struct Pushing {
     OneSidedSpring spring;
     int object = 0;
@@ -168,14 +169,14 @@ class ConstraintStepper::Derivation final : public Follower {
 
   PoseOf<AutoDiff> tool_pose() const { return PoseOfVector(q_WT_); }
 
-  // The normal of a plane, in W.
+  // Normal of a plane, in W.
   Vec3Of<AutoDiff> NormalOf(int plane) const {
     const auto turned = normals_.find(plane);
     if (turned != normals_.end()) return turned->second;
     return Found(plane).nhat_BA_W;
   }
 
-  // A plane's contact as the query found it.
+  // Contact of a plane as the query found it.
   ContactOf<AutoDiff> Found(int plane) const {
     const SeparatingPlane& found = rows_.found()[plane];
     return DifferentiatePieces(found.contact, found.pieces,
@@ -183,7 +184,7 @@ class ConstraintStepper::Derivation final : public Follower {
                                objects_[found.object]);
   }
 
-  // Collects all springs that push; one that just begins to does.
+  // Collects all springs that push; one that is about to counts as well.
   void FindPushing(const Vec6& motion) {
     const double at_rest = Approach<double>::kAtRest * h_;
     const DisplacedShape tool{&rows_.tool(), tool_pose()};
@@ -226,7 +227,7 @@ class ConstraintStepper::Derivation final : public Follower {
                                kBackSpeed * h_);
   }
 
-  // What the rows push with in the sub-step that ends the tick.
+  // Sums the forces of the rows in a sub-step; those of the last one remain.
   void SumForces() {
     F_To_W_.setZero();
     F_Oo_W_.assign(objects_.size(), Vec6Of<AutoDiff>::Zero());
@@ -248,13 +249,13 @@ class ConstraintStepper::Derivation final : public Follower {
   const ConstraintRows& rows_;
   const double h_;
   const ConstraintTick& tick_;
-  PoseVectorOf<AutoDiff> q_WT_;  // where the sub-step begins
+  PoseVectorOf<AutoDiff> q_WT_;  // pose at the sub-step's beginning
   Mat6Of<AutoDiff> H_;
   Vec6Of<AutoDiff> force_;
-  Vec6Of<AutoDiff> whole_;   // motion of the sub-steps before
-  Vec6Of<AutoDiff> motion_;  // of the last solution
+  Vec6Of<AutoDiff> whole_;   // motion of the earlier sub-steps
+  Vec6Of<AutoDiff> motion_;  // motion of the last solution
   std::vector<DisplacedShape> objects_, next_objects_;
-  std::map<int, Vec3Of<AutoDiff>> normals_;  // of planes that were turned
+  std::map<int, Vec3Of<AutoDiff>> normals_;  // of turned planes
   std::vector<Pushing> pushing_;
   Vec6Of<AutoDiff> F_To_W_;
   std::vector<Vec6Of<AutoDiff>> F_Oo_W_;

@@ -7,13 +7,14 @@
 
 namespace drake_haptics {
 
-/// Points that span a set: each is the farthest from the span of the former.
+/// Points that span a set: each is the farthest from the span of those before
+/// it.
 struct AffineBasis {
   int dimension = 0;  ///< 0 point, 1 segment, 2 flat, 3 solid
-  std::array<int, 4> point{0, 0, 0, 0};  ///< the first dimension + 1 count
+  std::array<int, 4> point{0, 0, 0, 0};  ///< first dimension + 1 are valid
 };
 
-/// The dimension of a set whose thickness below `tolerance` counts as none.
+/// Finds the dimension of a set; a thickness within `tolerance` counts as zero.
 /// @param points one or more, normalized for the predicates.
 AffineBasis FindAffineBasis(std::span<const Vec3> points, double tolerance);
 

@@ -72,7 +72,7 @@ int ConvexHull::AddFace(std::array<int, 3> vertex,
   return static_cast<int>(faces_.size()) - 1;
 }
 
-// Gives p to the first living face from `first_face` on that it is above.
+// Assigns p to the first living face, from `first_face` on, that p is above.
 bool ConvexHull::Distribute(int p, int first_face) {
   for (std::size_t f = first_face; f < faces_.size(); ++f) {
     Face& face = faces_[f];
@@ -110,7 +110,7 @@ void ConvexHull::AddPointBeyond(int seed) {
   }
 }
 
-// Marks the faces that p is strictly above as dead and collects the horizon.
+// Marks as dead the faces that p is strictly above, and collects the horizon.
 void ConvexHull::FindVisible(int seed, int p) {
   visible_.assign(1, seed);
   horizon_.clear();

@@ -25,17 +25,17 @@ struct HullTriangle {
 class ConvexHull {
  public:
   /// @param points normalized for the predicates.
-  /// @param simplex four of them that are not coplanar.
+  /// @param simplex indices of four points that are not coplanar.
   ConvexHull(std::span<const Vec3> points, std::array<int, 4> simplex);
 
-  /// Adds one more point; its index is the number of points before. False, and
-  /// no change of the surface, if it is not strictly outside.
+  /// Adds a point, whose index is the number of points before it. Returns
+  /// false, and leaves the surface unchanged, if it is not strictly outside.
   bool Add(const Vec3& point);
 
   const Vec3& point(int i) const { return points_[i]; }
   std::span<const Vec3> points() const { return points_; }
 
-  /// The surface, without gaps.
+  /// The triangles of the surface.
   std::vector<HullTriangle> Triangles() const;
 
   /// Calls `visit(triangle)` for each triangle of the surface.
@@ -46,15 +46,15 @@ class ConvexHull {
     }
   }
 
-  /// Corners of the triangles that the last successful Add replaced. With the
-  /// point itself they bound what it added to the volume.
+  /// Corners of the triangles that the last successful Add replaced. Together
+  /// with the point they bound the added volume.
   const std::vector<int>& last_covered() const { return last_covered_; }
 
  private:
   struct Face {
     HullTriangle triangle;
-    std::vector<int> outside;  // Points strictly above, each in one face.
-    int farthest = -1;         // Of them.
+    std::vector<int> outside;  // Points strictly above; each is in one face.
+    int farthest = -1;         // The farthest of these points.
     double farthest_height = 0;
     bool dead = false;
   };
@@ -75,7 +75,7 @@ class ConvexHull {
 
   std::vector<Vec3> points_;
   std::vector<Face> faces_;
-  std::vector<int> face_from_;  // New face whose horizon edge starts there.
+  std::vector<int> face_from_;  // New face whose edge starts at a point.
   std::vector<int> visible_;
   std::vector<HorizonEdge> horizon_;
   std::vector<int> last_covered_;

@@ -13,7 +13,7 @@ struct TriangleEdge {
   bool operator==(const TriangleEdge&) const = default;
 };
 
-// Whether the loops are polygons that make one closed surface without handles.
+// Whether the loops are polygons that form one closed surface without handles.
 bool IsSphere(const std::vector<Polygon>& polygons) {
   std::vector<std::pair<int, int>> forward, backward;
   std::vector<int> used;
@@ -47,8 +47,8 @@ class Merger {
         group_(triangles.size(), -1),
         runs_(points.size(), 0) {}
 
-  // Flood from the largest triangles, always against the seed's plane, so that
-  // a gently curved surface does not melt into one facet.
+  // Floods from the largest triangles. All are compared with the seed's plane,
+  // so that a gently curved surface does not become one facet.
   void Group(double tolerance) {
     std::vector<int> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -60,8 +60,8 @@ class Merger {
     }
   }
 
-  // A point between three facets or more is extreme; between two it lies on a
-  // straight edge, in one it lies inside.
+  // A point of three facets or more is extreme; a point of two lies on a
+  // straight edge, a point of one inside that facet.
   void CountRunsAroundPoints() {
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (int k = 0; k < 3; ++k) {
@@ -71,7 +71,7 @@ class Merger {
     }
   }
 
-  // The polygons, or none if the groups do not make a closed surface of them.
+  // Returns the polygons, or none if they do not form a closed surface.
   std::vector<Polygon> Collect() const {
     std::vector<int> num_boundary_edges(seeds_.size(), 0);
     std::vector<TriangleEdge> start(seeds_.size());

@@ -7,17 +7,17 @@
 
 namespace drake_haptics {
 
-/// The convex polygon about points near a plane, seen along its normal.
+/// Convex hull of points near a plane, seen along its normal.
 struct FlatHull {
   Vec3 normal = Vec3::Zero();
   std::vector<Vec3> corners;  ///< counter-clockwise about the normal
   double area = 0, perimeter = 0;
 
-  /// Whether a point near the plane is beyond no edge by more than `tolerance`.
+  /// Whether a point near the plane is at most `tolerance` (m) beyond any edge.
   bool Contains(const Vec3& point, double tolerance) const;
 
-  /// Whether parts of this total area fill it but for slivers of width
-  /// `tolerance`.
+  /// Whether parts of this total area fill the polygon except for slivers of
+  /// width `tolerance`, m.
   bool IsFilledBy(double part_area, double tolerance) const;
 };
 

@@ -9,9 +9,10 @@
 
 namespace drake_haptics {
 
-/// Sines of the tilt up to which a facet is flush, and from which it is not any
-/// more. Two edges of a right-angled corner at kFlush make a facet at kTilted,
-/// so that a facet takes over before two edges share the contact.
+/// Sines of the tilt up to which a facet is flush, and from which on it is not.
+/// Two edges of a right-angled corner that tilt by kFlush span a facet that
+/// tilts by kTilted, so that a facet takes over before two edges share the
+/// contact.
 inline constexpr double kFlush = 0.05;
 inline constexpr double kTilted = 0.0707;
 
@@ -23,21 +24,21 @@ inline double EdgeShare(double sine) {
   return std::max(0.0, 1 - sine * sine / (kFlush * kFlush));
 }
 
-/// The facets at a vertex that are nearly flush with the contact's plane, and
-/// what they leave of the contact to edges.
+/// Facets at a vertex that are nearly flush with the contact's plane, and the
+/// share of the contact that they leave to edges.
 struct FlushFacets {
   struct Item {
     int index = -1;
     double share = 0;
   };
-  /// More of them are left out: a fan as fine as that is a smooth surface.
+  /// Further facets are left out: so fine a fan is a smooth surface.
   static constexpr int kMost = 8;
   std::array<Item, kMost> facets;
   int count = 0;
   double rest = 1;
 
   FlushFacets(const Polytope& P, int vertex, const Vec3& outward) {
-    // A little below the cosine of the tilt.
+    // Slightly below the cosine of the tilt kTilted.
     constexpr double kCosTilted = 0.9974;
     for (const Polytope::OneRingEntry& ring_entry : P.fan_of(vertex)) {
       if (!(ring_entry.normal.dot(outward) > kCosTilted) || count == kMost)
@@ -52,7 +53,7 @@ struct FlushFacets {
   const Item* end() const { return facets.data() + count; }
 };
 
-/// Calls visit(edge, share) for each edge at a vertex that is nearly flush.
+/// Calls visit(edge, share) for each nearly flush edge at a vertex.
 template <typename Visitor>
 void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
                      const Visitor& visit) {

@@ -11,8 +11,8 @@
 namespace drake_haptics {
 namespace {
 
-// What round-off leaves between the corners of a flat facet and its plane, as a
-// share of the coordinates.
+// Distance due to round-off between the corners of a flat facet and its plane,
+// as a share of the coordinates.
 constexpr double kRoundOff = 1e-13;
 
 bool IsFlat(const Polytope& P, int f, double round_off) {
@@ -30,7 +30,7 @@ bool AreAllFlat(const Polytope& P, double round_off) {
   return true;
 }
 
-// The corner of a triangle across edge k.
+// The corner of the adjacent triangle that faces edge k.
 int CornerAcross(const std::vector<HullTriangle>& triangles,
                  const HullTriangle& triangle, int k) {
   for (const int v : triangles[triangle.neighbor[k]].vertex) {

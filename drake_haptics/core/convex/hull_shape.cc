@@ -14,13 +14,14 @@
 namespace drake_haptics {
 namespace {
 
-// Points closer than this share of the size are one: a hundred times the
-// flatness that merges facets, which must not merge the edge between two.
+// Points closer than this share of the size are one. It is a hundred times the
+// flatness that merges facets, so that merging keeps the edge between two
+// points.
 constexpr double kSamePointShare = 1e-10;
 
-// Drops corners that stand out of the line of their neighbors by less than
-// the tolerance. Neighbors never go in the same pass, so that a fine polygon
-// cannot melt away.
+// Drops corners within the tolerance of the line through their neighbors. Two
+// neighbors are never dropped in the same pass, so that a fine polygon cannot
+// vanish.
 void DropStraightCorners(std::span<const Vec3> points, double tolerance,
                          std::vector<int>* loop) {
   bool dropped = true;
@@ -101,7 +102,7 @@ std::vector<int> ExtremePoints(const AffineBasis& basis,
 }  // namespace
 
 bool AreUsable(std::span<const Vec3> points) {
-  // Beyond, squares of areas overflow.
+  // Beyond this, squares of areas overflow.
   static constexpr double kLargest = 1e50;
   return std::all_of(points.begin(), points.end(), [](const Vec3& p) {
     return (p.array().abs() < kLargest).all();  // False for NaN.
@@ -128,7 +129,7 @@ HullShape FindHullShape(std::span<const Vec3> points, double tolerance,
   distinct.reserve(source.size());
   for (const int i : source) distinct.push_back(normalized[i]);
 
-  // The coordinates are below 1 now; so is the round-off they came with.
+  // The coordinates are below 1 now, and their round-off below epsilon.
   const double thickness =
       std::max(tolerance * scale, 4 * std::numeric_limits<double>::epsilon());
   const AffineBasis basis = FindAffineBasis(distinct, thickness);

@@ -19,8 +19,8 @@ bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
   return std::find(loop.begin(), loop.end(), vertex) != loop.end();
 }
 
-// Whether directions of a surface fall away from n, none rises, and so n points
-// out of what is convex there.
+// Whether some directions of a surface fall away from n and none rises, so that
+// n points out of a convex part.
 bool FallsAway(std::span<const Vec3> directions, const Vec3& n) {
   const auto rises = [&](const Vec3& r) { return n.dot(r) > kSurfaceSlack; };
   const auto falls = [&](const Vec3& r) { return n.dot(r) < -kSurfaceSlack; };
@@ -28,8 +28,8 @@ bool FallsAway(std::span<const Vec3> directions, const Vec3& n) {
          std::any_of(directions.begin(), directions.end(), falls);
 }
 
-// Whether the surface is convex at an edge: between facets of its own a piece
-// is, and elsewhere one face falls away from the other.
+// Whether the surface is convex at an edge. Between original facets a piece is
+// convex; elsewhere one face must fall away from the other.
 bool IsConvex(const Polytope& polytope, const Polytope::Edge& edge) {
   if (!edge.original || edge.left < 0 || edge.right < 0) return false;
   if (polytope.facets[edge.left].original &&
@@ -42,9 +42,9 @@ bool IsConvex(const Polytope& polytope, const Polytope::Edge& edge) {
 }
 
 // Whether n leaves the solid at an edge of the mesh: seen from inside, a
-// concave edge is a ridge like any other. The normals of the mesh's faces
-// beside it follow from its wings. Along the rim of an open mesh, n may lie in
-// the one face there is. Out of a blade it is nearly in both faces.
+// concave edge is a ridge like any other. The wings give the normals of the
+// mesh faces beside the edge. At the rim of an open mesh, n may lie in the only
+// face. Out of a blade, n lies nearly in both faces.
 bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
                 const Vec3& n) {
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
@@ -58,7 +58,7 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
          (IsConvex(polytope, edge) && FallsAway(edge.wings, n));
 }
 
-// Out of a vertex at the edge of a blade, or at the tip of a needle.
+// Whether n leaves a vertex at the edge of a blade, or at the tip of a needle.
 bool LeavesTip(const Polytope& polytope, int vertex, const Vec3& n) {
   if (!FallsAway(polytope.ring_of(vertex), n)) return false;
   const auto fan = polytope.fan_of(vertex);
@@ -74,8 +74,9 @@ bool LeavesTip(const Polytope& polytope, int vertex, const Vec3& n) {
          std::any_of(fan.begin(), fan.end(), is_of_blade);
 }
 
-// The same at a vertex, by the faces that the piece has there: along its faces
-// a direction leaves nothing, but at the rim of an open mesh and at a tip.
+// Whether n leaves the solid at a vertex, by the piece's faces there. A
+// direction along the faces does not, except at the rim of an open mesh and at
+// a tip.
 bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   bool has_surface = false;
   bool is_rim = false;

@@ -13,25 +13,25 @@ namespace {
 
 // Sine of the angle by which corners are tested more loosely than contacts.
 constexpr double kLoose = 1e-6;
-// How far an edge carries beyond the normals beside it; a little more than
-// counts.
+// Tangent of the angle by which an edge's arc extends beyond the normals beside
+// it; slightly above the slack.
 constexpr double kArcSlack = 1.01 * kSurfaceSlack;
-// 1 + the cosine between normals that are beside a knife's edge: with the slack
-// at both ends, they would be half a turn apart or more.
+// 1 + the cosine between the normals beside a knife's edge, below which an arc
+// with slack at both ends would span half a turn or more.
 constexpr double kKnife = 2.1 * kArcSlack * kArcSlack;
-// By how much the arc of a knife's edge is shorter at each end, rad.
+// Angle by which the arc of a knife's edge is shortened at each end, rad.
 constexpr double kShort = 1e-6;
-// Between two corners a boundary bulges by the slack at most, and round-off.
+// Between two corners a boundary bulges by at most the slack and round-off.
 constexpr double kBulge = 2 * kSurfaceSlack;
-// Cosine of the widest cone that is worth asking; any narrower than a right
-// angle holds what is between the directions in it.
+// Cosine of the widest useful cone. A cone narrower than a right angle contains
+// all directions between those in it.
 constexpr double kWidest = 0.1;
 
 class Collection {
  public:
   explicit Collection(const Polytope& piece) : piece_(piece) {}
 
-  // False where the directions are not bounded by corners.
+  // Returns false if corners do not bound the directions.
   bool Run() {
     for (const Polytope::Facet& facet : piece_.facets) {
       if (facet.original) corners_.push_back(facet.normal);
@@ -60,8 +60,8 @@ class Collection {
   }
 
  private:
-  // The directions n with n · r = slack for two of the ring, and no more for
-  // the others.
+  // Adds the directions n with n · r = slack for two r of the ring, and n · r
+  // within the slack for the others.
   bool AddVertex(int v) {
     const auto ring = piece_.ring_of(v);
     if (ring.size() < 3) return false;
@@ -72,7 +72,7 @@ class Collection {
             (ring[i] + ring[j]) * (kSurfaceSlack / (1 + ring[i].dot(ring[j])));
         const double rest = 1 - between.squaredNorm();
         const Vec3 across = ring[i].cross(ring[j]);
-        // In one line they allow what others of the ring must bound.
+        // Collinear edges define no corner; the rest of the ring bounds n.
         if (!(rest > 0) || !(across.squaredNorm() > 1e-20)) continue;
         const Vec3 aside = across.normalized() * std::sqrt(rest);
         for (const Vec3& n : {Vec3(between + aside), Vec3(between - aside)}) {
@@ -91,8 +91,8 @@ class Collection {
     });
   }
 
-  // The normal of a plane in which the mesh lies all around a vertex: from its
-  // back it carries nothing. Null if there is none.
+  // The normal of the plane in which the mesh lies all around a vertex, which
+  // carries nothing from behind. Null if there is none.
   const Vec3* FindFlatFacet(int v, std::span<const Vec3> ring) const {
     for (const Polytope::OneRingEntry& ring_entry : piece_.fan_of(v)) {
       if (!piece_.facets[ring_entry.facet].original) continue;
@@ -124,10 +124,10 @@ void FillEdgeNormalArcs(Polytope* piece) {
     const Vec3 along = (piece->vertices[edge.v1] - piece->vertices[edge.v0])
                            .stableNormalized();
     const Vec3 normals[2] = {along.cross(left), right.cross(along)};
-    // A concave edge carries nothing. A rim carries from its face's normal to
-    // the direction away from the face, and is not quite flush with either. A
-    // knife's, beside faces that lie back to back, ends short of their normals:
-    // an arc of half a turn or more would lead through the knife.
+    // A concave edge carries nothing. The arc of a rim runs from its face's
+    // normal to the direction away from the face, and a little beyond both. The
+    // arc of a knife's edge, whose faces lie back to back, ends short of their
+    // normals: an arc of half a turn or more would lead through the knife.
     if (!is_rim && normals[0].dot(right) > 2 * kArcSlack) continue;
     const bool is_knife = !is_rim && normals[0].dot(normals[1]) < -1 + kKnife;
     const double slack = is_knife ? -kShort : kArcSlack;

@@ -8,10 +8,9 @@
 namespace drake_haptics {
 
 /// Keeps the part of a convex polygon, or of a segment given as two corners,
-/// where a function that is linear is not negative (Sutherland and Hodgman
-/// 1974).
-/// @param value of the function at a point.
-/// @param buffer kept between calls, so that they allocate nothing.
+/// where a linear function is not negative (Sutherland and Hodgman 1974).
+/// @param value the function, called with a point.
+/// @param buffer memory kept between calls, so that they do not allocate.
 template <typename Value>
 void ClipPolygon(const Value& value, std::vector<Vec3>* polygon,
                  std::vector<Vec3>* buffer) {

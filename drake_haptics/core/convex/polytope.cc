@@ -16,13 +16,14 @@
 namespace drake_haptics {
 namespace {
 
-// What walks and supports run through: a cache line an entry, two an edge.
+// Walks and support searches run through these: one cache line per entry, two
+// per edge.
 static_assert(sizeof(Polytope::OneRingEntry) == 64);
 static_assert(sizeof(Polytope::Edge) == 128);
 static_assert(sizeof(Polytope::Facet) == 48);
 
-// Turns ragged lists given as (owner, item) pairs in order of `owners` into CSR
-// arrays: counts first, then a running sum.
+// Returns the CSR starts of the items of each owner, from the owner of each
+// item: counts first, then a running sum.
 std::vector<int> StartsFromOwners(std::span<const int> owners, int num_owners) {
   std::vector<int> start(num_owners + 1, 0);
   for (const int owner : owners) ++start[owner + 1];
@@ -45,8 +46,8 @@ void AddFacets(const HullShape& shape, Polytope* P) {
   }
 }
 
-// One edge for each pair of opposite steps of the loops, in the order and the
-// direction in which the loops meet it first.
+// Adds one edge for each pair of opposite steps of the loops, in the order and
+// the direction in which the loops first meet it.
 void AddEdges(Polytope* P) {
   struct Side {
     int low, high, facet, slot, from;
@@ -64,7 +65,7 @@ void AddEdges(Polytope* P) {
   std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
     return std::tie(s.low, s.high, s.slot) < std::tie(t.low, t.high, t.slot);
   });
-  // Pairs, by the slot that comes first.
+  // Pairs of sides, by the earlier slot.
   std::vector<std::pair<int, int>> pairs;
   for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
     pairs.emplace_back(sides[i].slot, static_cast<int>(i));
@@ -95,8 +96,8 @@ void AddWings(Polytope* P) {
   }
 }
 
-// An edge that leaves a vertex, the facet to its left and where that facet's
-// loop came from: the end of the next edge around the vertex.
+// An edge that leaves a vertex, the facet to its left and the vertex before it
+// in that facet's loop: the end of the next edge around the vertex.
 struct Step {
   int from, to, before, edge, facet;
 };

@@ -17,11 +17,11 @@ namespace drake_haptics {
 /// is its front, facet 1 its back with the opposite normal. A segment
 /// (dimension 1) has two vertices and one edge, a point one vertex.
 ///
-/// "Surface" is what the polytope stands for. For a polytope on its own that
-/// is its whole boundary. For a piece of a decomposed mesh it is the patch of
-/// the mesh that the piece was made from: the features of the hull which are
-/// not on the mesh are virtual (paper, 5.3.1), and the surface goes on beyond
-/// the piece, as the directions in `ring` and `wings` tell.
+/// "Surface" is what the polytope stands for. For a polytope on its own that is
+/// its whole boundary. For a piece of a decomposed mesh it is the patch of the
+/// mesh that the piece was made from: the features of the hull that are not on
+/// the mesh are virtual (paper, 5.3.1), and the surface continues beyond the
+/// piece in the directions of `ring` and `wings`.
 struct Polytope {
   struct Edge {
     int v0 = -1, v1 = -1;       ///< end vertices
@@ -33,30 +33,30 @@ struct Polytope {
     /// n · wing <= 0 for each wing. Zero vectors where there is no face.
     std::array<Vec3, 2> wings{Vec3::Zero(), Vec3::Zero()};
     /// Ends of the arc of outward directions along which the edge can carry a
-    /// contact, up to two quarter turns apart, nearly unit; zero where it
-    /// cannot (patch_normal_cone.h).
+    /// contact, up to half a turn apart, nearly unit; zero if it cannot
+    /// (patch_normal_cone.h).
     std::array<Vec3, 2> normal_arc{Vec3::Zero(), Vec3::Zero()};
-    double turn = 0;  ///< see gauss_turn.h
+    double turn = 0;  ///< see gauss_angle_bound.h
   };
 
   struct Facet {
     Vec3 normal = Vec3::Zero();  ///< unit, outward
     double offset = 0;           ///< normal · x = offset on the facet, m
     bool original = true;        ///< lies on the surface
-    double turn = 0;             ///< see gauss_turn.h
+    double turn = 0;             ///< see gauss_angle_bound.h
   };
 
-  /// An edge at a vertex and the facet that follows it, with copies of what a
-  /// search reads: going round a vertex is one run through memory.
+  /// An edge at a vertex and the facet that follows it, with copies of the data
+  /// that a search reads, so that it reads contiguous memory around a vertex.
   struct OneRingEntry {
     Vec3 along = Vec3::Zero();   ///< from the vertex to its neighbor, m
-    Vec3 normal = Vec3::Zero();  ///< of the facet; zero on a segment
+    Vec3 normal = Vec3::Zero();  ///< facet's normal; zero on a segment
     int neighbor = -1;           ///< vertex at the edge's other end
     int edge = -1;
     int facet = -1;  ///< -1 on a segment
   };
 
-  /// An edge of the exact hull of the vertices that is inside of a facet.
+  /// An edge of the exact hull of the vertices that lies inside a facet.
   struct HiddenEdge {
     Vec3 along = Vec3::Zero();  ///< from the vertex to its neighbor, m
     int neighbor = -1;
@@ -72,7 +72,7 @@ struct Polytope {
   std::vector<int> facet_loop;
   /// Edge k of facet f's loop joins loop vertices k and k + 1.
   std::vector<int> facet_loop_edge;
-  /// Unit normal of that edge in the facet's plane, out of the facet.
+  /// Unit normal of edge k in the facet's plane, out of the facet.
   std::vector<Vec3> facet_loop_side;
 
   /// The edges and facets around each vertex, counter-clockwise seen from
@@ -80,8 +80,8 @@ struct Polytope {
   std::vector<int> fan_start{0};
   std::vector<OneRingEntry> fan;
 
-  /// The edges at each vertex that facets hide which are flat only within the
-  /// tolerance (hidden_edges.h); both empty where all facets are flat.
+  /// Edges at each vertex inside facets that are flat only within the tolerance
+  /// (hidden_edges.h); both empty if all facets are flat.
   std::vector<int> hidden_start;
   std::vector<HiddenEdge> hidden;
 
@@ -91,13 +91,13 @@ struct Polytope {
   std::vector<int> ring_start{0};
   std::vector<Vec3> ring;
 
-  /// Holds all outward directions along which the surface can carry a contact
-  /// (patch_normal_cone.h).
+  /// Contains all outward directions along which the surface can carry a
+  /// contact (patch_normal_cone.h).
   DirectionCone normal_cone;
 
   Vec3 centroid = Vec3::Zero();  ///< mean of the vertices
-  double radius = 0;             ///< of the ball about the centroid, m
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< corners of its box, m
+  double radius = 0;  ///< radius of the bounding ball about the centroid, m
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< corners of the box, m
 
   int num_vertices() const { return static_cast<int>(vertices.size()); }
 
@@ -133,8 +133,8 @@ struct Polytope {
 /// rings and wings along its own edges and facets. Coplanar triangles are
 /// merged into one facet, collinear and inner points are dropped. A set whose
 /// thickness is below `flatness` times its size is flattened.
-/// @param points positions, m; the order decides the order of the result.
-/// @throws std::invalid_argument if empty or not finite.
+/// @param points positions, m; their order determines the order of the result.
+/// @throws std::invalid_argument if empty, or not finite and below 1e50 m.
 Polytope MakePolytope(std::span<const Vec3> points, double flatness = 1e-12);
 
 }  // namespace drake_haptics

@@ -18,7 +18,7 @@ constexpr double kRound = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kOrient3dBound = (7 + 56 * kRound) * kRound;
 constexpr double kOrient2dBound = (3 + 16 * kRound) * kRound;
 
-// A cross product that lost fewer digits than this is taken as it is.
+// A cross product above this share of |u| |v| has lost few digits and is kept.
 constexpr double kCrossKept = 0.05;
 
 struct ExactEdge {
@@ -80,8 +80,7 @@ Vec3 TriangleCross(const Vec3& a, const Vec3& b, const Vec3& c) {
 double PowerOfTwoScale(double magnitude) {
   int exponent = 0;
   std::frexp(magnitude, &exponent);
-  // Two steps would be needed for the very smallest numbers; they are zero for
-  // every purpose here.
+  // The smallest numbers would need two steps; here they count as zero.
   return std::ldexp(1.0, std::min(-exponent, 1000));
 }
 

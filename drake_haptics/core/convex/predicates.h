@@ -26,7 +26,8 @@ Vec3 TriangleCross(const Vec3& a, const Vec3& b, const Vec3& c);
 double PowerOfTwoScale(double magnitude);
 
 /// `point` times `scale` with coordinates below 2^-200 set to zero: then every
-/// exact value above is a multiple of 2^-756 and nothing underflows.
+/// exact value of the predicates is a multiple of 2^-756 and nothing
+/// underflows.
 Vec3 NormalizeForPredicates(const Vec3& point, double scale);
 
 }  // namespace drake_haptics

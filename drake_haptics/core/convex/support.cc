@@ -6,8 +6,8 @@ namespace drake_haptics {
 namespace {
 
 // Whether a gain along a direction is more than the round-off of the product.
-// An absolute threshold would end the climb at edges that are short beside the
-// polytope.
+// An absolute threshold would end the climb at edges that are short compared
+// with the polytope.
 bool IsGain(double gain, const Vec3& direction, const Vec3& along) {
   constexpr double kRoundOff = 4e-16;
   return gain > kRoundOff * direction.cwiseProduct(along).cwiseAbs().sum();
@@ -16,8 +16,8 @@ bool IsGain(double gain, const Vec3& direction, const Vec3& along) {
 }  // namespace
 
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
-  // Every vertex is extreme, so a vertex that no neighbor beats is the
-  // farthest one. The bound ends a walk in circles that round-off allows.
+  // Every vertex is extreme, so a vertex that no neighbor beats is the farthest
+  // one. The bound ends cycles that round-off allows.
   assert(start >= 0 && start < polytope.num_vertices());
   int best = start;
   for (int left = polytope.num_vertices(); left > 0; --left) {

@@ -8,28 +8,28 @@
 
 namespace drake_haptics {
 
-/// The vertex of `polytope` that is farthest along `direction` (any length,
-/// in the polytope's frame). Climbs from vertex `start` from fan to fan, so
-/// that on coherent motion it costs one fan whatever the size.
+/// The vertex of `polytope` that is farthest along `direction` (any length, in
+/// the polytope's frame). Climbs from vertex `start`, fan by fan: under
+/// coherent motion it reads one fan, whatever the size.
 [[nodiscard]] int SupportVertex(const Polytope& polytope, const Vec3& direction,
                                 int start);
 
-/// How far an edge that a facet hides at vertex v may rise from it, for all
-/// that the facet is flat within its tolerance, m: out of its plane, and where
-/// two corners nearly coincide, beside its edges.
+/// Rise, m, that the flatness tolerance of a facet allows to an edge hidden in
+/// it at vertex v: out of the facet's plane and, where two corners nearly
+/// coincide, beside its edges.
 inline double Unevenness(const Polytope& P, int v,
                          const Polytope::HiddenEdge& edge) {
   double least = edge.along.norm();
   for (const auto& ring_entry : P.fan_of(v)) {
     least = std::min(least, std::abs(ring_entry.normal.dot(edge.along)));
   }
-  constexpr double kTolerance = 1e-6;  // of facets, as a share of the size
+  constexpr double kTolerance = 1e-6;  // flatness, as a share of the size
   return std::max(2 * least, kTolerance * P.radius);
 }
 
 /// Whether no neighbor of vertex v is farther than v along the unit direction,
-/// in the polytope's frame, by more than the slack (m). One across a facet may
-/// be farther by what the facet is not flat.
+/// in the polytope's frame, by more than the slack (m). A neighbor across a
+/// facet may also be farther by the unevenness of the facet.
 [[nodiscard]] inline bool IsFarthest(const Polytope& P, int v,
                                      const Vec3& direction, double slack) {
   for (const auto& ring_entry : P.fan_of(v)) {
@@ -43,7 +43,7 @@ inline double Unevenness(const Polytope& P, int v,
 }
 
 /// Two polytopes in A's frame: A as it is, B posed by X_AB. The difference of
-/// the origins is formed once, in X_AB, so that offsets of both in the world
+/// the origins is formed once, in X_AB, so that common offsets in the world
 /// cost no precision.
 struct PosedPair {
   const Polytope& A;
@@ -58,7 +58,7 @@ struct PosedPair {
   int SupportB(const Vec3& n, int start) const {
     return SupportVertex(B, X_AB.R.transpose() * n, start);
   }
-  /// A length by which round-off is judged, m.
+  /// Length to which round-off is compared, m.
   double scale() const { return A.radius + B.radius; }
 };
 

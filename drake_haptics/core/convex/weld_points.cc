@@ -8,10 +8,10 @@
 namespace drake_haptics {
 namespace {
 
-// Points on a lattice or in a plane do not fall together along this direction.
+// Points on a lattice or in a plane do not coincide along this direction.
 const Vec3 kOblique = Vec3(0.8034271, 0.5119483, 0.3042617).normalized();
 
-// Indices of points that differ, the first of each kind, ascending.
+// Indices of distinct points, the first of equal ones, ascending.
 std::vector<int> UnequalPoints(std::span<const Vec3> points) {
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
@@ -38,8 +38,7 @@ std::vector<int> WeldPoints(std::span<const Vec3> points, double distance) {
   along.reserve(kept.size());
   for (const int i : kept) along.emplace_back(kOblique.dot(points[i]), i);
   std::sort(along.begin(), along.end());
-  // (later, earlier): whether the earlier one stays is known when its turn
-  // comes.
+  // Pairs (later, earlier): in sorted order, the earlier one is decided first.
   std::vector<std::pair<int, int>> close;
   for (std::size_t k = 0; k < along.size(); ++k) {
     const auto& [height, i] = along[k];

@@ -7,9 +7,9 @@
 
 namespace drake_haptics {
 
-/// Indices of the points that are farther than `distance` from every one kept
-/// before, ascending. Two vertices that are nearly one have an edge without a
-/// direction and facets without a normal; nothing can be climbed over them.
+/// Indices, ascending, of the points that are farther than `distance` from
+/// every point kept before. Two nearly coincident vertices have an edge without
+/// a direction and facets without a normal, over which no search can climb.
 std::vector<int> WeldPoints(std::span<const Vec3> points, double distance);
 
 }  // namespace drake_haptics

@@ -17,8 +17,8 @@ bool IsFinite(const std::array<double, size>& values) {
                      [](double value) { return std::isfinite(value); });
 }
 
-// Normalizes the pose. False if it is not a pose, or other values are not
-// finite.
+// Normalizes the pose. Returns false if it is not a pose or other values are
+// not finite.
 bool MakeUsable(HandleState* state) {
   auto& X = state->X;
   const double norm =
@@ -68,8 +68,8 @@ bool DeviceLink::Take(std::span<const unsigned char> packet, double now) {
   return true;
 }
 
-// Every start of a driver has a number of its own. What comes from the start
-// before is late, and no second restart.
+// Each run of a driver has its own boot number. A packet of the run before is
+// late, and not another restart.
 bool DeviceLink::AcceptBoot(std::uint32_t boot) {
   if (boot == boot_) return true;
   if (boot == boot_before_ && boot_ != 0) {
@@ -106,7 +106,7 @@ void DeviceLink::Latch(std::uint8_t fault) {
   Follow();
 }
 
-// Goes on as the device's gate allows, and says which gate holds.
+// Updates the mode from the device's gate, and the gate and fault in `state_`.
 void DeviceLink::Follow() {
   if (mode_ == Mode::kActive && device_gate_ == DH_FAULT) {
     mode_ = Mode::kLatched;
@@ -115,7 +115,8 @@ void DeviceLink::Follow() {
              device_gate_ == DH_IDLE) {
     mode_ = Mode::kActive;
   }
-  // Wanted back is not yet there: what a driver said last no longer holds.
+  // A driver that is to recover may still be silent: then its last gate no
+  // longer holds.
   const bool is_gone =
       mode_ == Mode::kWaiting && !is_heard_ && latched_fault_ != DH_FAULT_NONE;
   const bool at_fault = mode_ == Mode::kLatched || is_gone;
@@ -128,8 +129,8 @@ void DeviceLink::Follow() {
 }
 
 bool DeviceLink::IsEnabling() const {
-  // A device at fault is left there, for all to see, until it is recovered; a
-  // command that disables it would clear the fault.
+  // A device at fault stays so, for all to see, until `Recover`: a command that
+  // disables it would clear the fault.
   const bool leaves_fault =
       mode_ == Mode::kLatched && is_heard_ && device_gate_ == DH_FAULT;
   return mode_ == Mode::kActive || leaves_fault;

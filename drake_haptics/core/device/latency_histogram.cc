@@ -13,7 +13,7 @@ constexpr double kWindow = 10;      // s
 
 void LatenessHistogram::Record(double lateness) {
   const double octaves = std::log2(std::max(lateness, kSmallest) / kSmallest);
-  // What is not a number counts as the latest.
+  // NaN counts as the largest lateness.
   const bool is_within = kPerOctave * octaves < kBuckets - 1;
   const int bucket =
       is_within ? static_cast<int>(kPerOctave * octaves) : kBuckets - 1;

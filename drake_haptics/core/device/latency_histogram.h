@@ -6,15 +6,16 @@
 
 namespace drake_haptics {
 
-/// How late a thread was, as a histogram over powers of 2^(1/4): from 1 µs to
-/// over 10 s, each within a fifth. One thread records, any other asks.
+/// Histogram of a thread's lateness over powers of 2^(1/4), from 1 µs to over
+/// 10 s, so that each value is known within a fifth. One thread records, any
+/// other reads.
 class LatenessHistogram {
  public:
   /// Counts one lateness, s. Less than 1 µs counts as 1 µs.
   void Record(double lateness);
 
-  /// The lateness (s) that the given part of all records did not exceed, from
-  /// above: 0 if there are none.
+  /// Upper bound on the lateness (s) that the given part of all records did not
+  /// exceed; 0 without records.
   double Quantile(double part) const;
 
  private:
@@ -23,14 +24,14 @@ class LatenessHistogram {
   std::array<std::atomic<std::uint64_t>, kBuckets> counts_{};
 };
 
-/// How late samples are answered, against the promptest answer of late. Two
-/// clocks are compared whose offset is unknown and drifts: that of the sender's
-/// stamps and ours. The smallest difference of the last 10 to 20 s is taken for
+/// Lateness of the answers to samples, relative to the promptest recent answer.
+/// It compares the clock of the sender's stamps with ours, whose offset is
+/// unknown and drifts: the smallest difference of the last 10 to 20 s counts as
 /// no lateness.
 class AnswerLateness {
  public:
-  /// @param stamp when the sender sampled, s, by its clock.
-  /// @param now when we answered, s, by ours.
+  /// @param stamp time of the sample by the sender's clock, s.
+  /// @param now time of the answer by our clock, s.
   /// @returns the lateness, s, at least 0.
   double Measure(double stamp, double now);
 
@@ -40,8 +41,8 @@ class AnswerLateness {
  private:
   bool has_any_ = false;
   double window_began_ = 0;
-  double smallest_ = 0;         // of this window
-  double smallest_before_ = 0;  // of the window before
+  double smallest_ = 0;         // smallest difference in this window
+  double smallest_before_ = 0;  // and in the window before
 };
 
 }  // namespace drake_haptics

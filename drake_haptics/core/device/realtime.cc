@@ -10,7 +10,8 @@
 namespace drake_haptics {
 namespace {
 
-// Blocks all signals while it lives: a thread that is started then gets none.
+// Blocks all signals while it lives, so that threads started meanwhile get
+// none.
 class BlockedSignals {
  public:
   BlockedSignals() {
@@ -44,7 +45,8 @@ void ServoThread::Start(std::function<void()> serve) {
 void ServoThread::Close() {
   closing_.store(true);
   if (getpid() != process_) {
-    // A fork has our memory, but not the thread, nor who may hold the lock.
+    // A forked process has our memory, but neither the thread nor a holder of
+    // the lock.
     if (thread_.joinable()) thread_.detach();
     return;
   }

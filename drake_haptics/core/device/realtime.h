@@ -10,9 +10,10 @@
 
 namespace drake_haptics {
 
-/// Asks the system to run the calling thread before all others that are not of
-/// this kind (SCHED_FIFO).
-/// @param level above the default of such threads, and below the kernel's own.
+/// Asks the system to run the calling thread before all threads without
+/// real-time priority (SCHED_FIFO).
+/// @param level priority, counted from the lowest of such threads; it must stay
+///     below the kernel's own threads.
 /// @returns whether it was granted, which usually needs a privilege.
 bool RequestRealtimePriority(int level);
 
@@ -20,14 +21,15 @@ bool RequestRealtimePriority(int level);
 /// @returns whether it was granted.
 bool RequestLockedMemory(const void* begin, std::size_t size);
 
-/// The thread of a servo. It gets no signals: they are for the interpreter's
-/// thread, which would else sleep on.
+/// The thread of a servo. It gets no signals, which must reach the
+/// interpreter's thread: that would otherwise sleep on.
 class ServoThread {
  public:
-  /// Runs `serve`, which returns soon after `IsClosing`. Called once.
+  /// Runs `serve`, which must return soon after `IsClosing` is true. Called
+  /// once.
   void Start(std::function<void()> serve);
 
-  /// Whether the thread is to end. Any thread.
+  /// Whether the thread must end. Any thread.
   bool IsClosing() const { return closing_.load(std::memory_order_relaxed); }
 
   /// Ends the thread; later calls do nothing. Any thread.

@@ -9,13 +9,13 @@
 
 namespace drake_haptics {
 
-/// The latest value of one writing thread, for any number of reading ones.
-/// Neither ever waits for the other: a reader that meets a write keeps what it
-/// has. It does not retry for ever, since a reader of higher priority on the
-/// writer's own core would then never let the write end.
+/// The latest value of one writing thread, for any number of reading threads.
+/// Neither side waits for the other: a reader that meets a write keeps its old
+/// value. It does not retry forever, since a reader of higher priority on the
+/// writer's core would then never let the write end.
 ///
-/// The value is stored as atomic words, so that a torn read is seen and thrown
-/// away instead of being a data race (Boehm, "Can seqlocks get along with
+/// The value is stored as atomic words, so that a torn read is detected and
+/// discarded instead of being a data race (Boehm, "Can seqlocks get along with
 /// programming language memory models?", MSPC 2012).
 template <typename T>
 class Seqlock {
@@ -35,8 +35,8 @@ class Seqlock {
     version_.store(before + 2, std::memory_order_release);
   }
 
-  /// Copies the value if it is another one than was seen.
-  /// @param seen the reader's own memory of what it has seen; 0 at first.
+  /// Copies the value if it is newer than the one that this reader has.
+  /// @param seen version that the reader has, kept by the reader; 0 at first.
   /// @returns whether `value` was replaced.
   bool ReadNewer(std::uint64_t* seen, T* value) const {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -49,7 +49,7 @@ class Seqlock {
       }
       std::atomic_thread_fence(std::memory_order_acquire);
       if (version_.load(std::memory_order_relaxed) != before) continue;
-      // As bytes: members with initial values make T nontrivial.
+      // As bytes, because default member initializers make T nontrivial.
       std::memcpy(static_cast<void*>(value), words.data(), sizeof(T));
       *seen = before;
       return true;

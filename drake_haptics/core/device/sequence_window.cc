@@ -6,7 +6,7 @@ SequenceWindow::Arrival SequenceWindow::Accept(std::uint32_t sequence) {
   if (!has_newest_) {
     has_newest_ = true;
     newest_ = sequence;
-    came_ = ~std::uint64_t{0};  // what was before the first is not missed
+    came_ = ~std::uint64_t{0};  // packets before the first are not lost
     return Arrival::kNewest;
   }
   const auto ahead = static_cast<std::int32_t>(sequence - newest_);

@@ -4,14 +4,15 @@
 
 namespace drake_haptics {
 
-/// Which packet of a numbered series came, in what order, and which did not.
-/// Numbers rise by one and wrap at 2³²; they are compared by serial-number
-/// arithmetic (RFC 1982).
+/// Tracks which packets of a numbered series came, in what order, and which are
+/// lost. Numbers rise by one and wrap at 2³²; they are compared by
+/// serial-number arithmetic (RFC 1982).
 class SequenceWindow {
  public:
   enum class Arrival { kNewest, kLate, kDuplicate };
 
-  /// Counts a packet. One more than 64 numbers late counts as a duplicate.
+  /// Counts a packet. A packet that is 64 numbers late or more counts as a
+  /// duplicate.
   Arrival Accept(std::uint32_t sequence);
 
   /// Numbers that were skipped and have not come since.
@@ -19,7 +20,7 @@ class SequenceWindow {
   std::int64_t num_late() const { return num_late_; }
   std::int64_t num_duplicate() const { return num_duplicate_; }
 
-  /// Begins a new series, and goes on counting.
+  /// Begins a new series; the counts go on.
   void Restart() { has_newest_ = false; }
 
  private:

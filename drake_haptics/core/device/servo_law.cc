@@ -9,10 +9,11 @@
 namespace drake_haptics {
 namespace {
 
-// After a pause of the fast loop itself, force rises as after this much, s.
+// Longest time step for the rise of the force, s: a pause of the fast loop
+// counts as no more.
 constexpr double kLargestRise = 2e-3;
-// Damping half way between no force and full force, N·m·s/rad and N·s/m: the
-// least that the device presets recommend, which any device can show.
+// Damping half-way between no force and full force, N·m·s/rad and N·s/m: the
+// smallest that the device presets recommend, which any device can show.
 constexpr double kTurnBrake = 4e-3;
 constexpr double kBrake = 4;
 

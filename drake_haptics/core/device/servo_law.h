@@ -7,9 +7,10 @@
 
 namespace drake_haptics {
 
-/// A wrench on the handle, and how it changes as the handle moves on:
+/// A wrench on the handle with its local linear model:
 /// F(X, V) = F₀ − K δ − B (V − V₀), δ = [rotation vector; translation] from X₀
-/// to X. All at the handle's origin Ho in one frame; [torque; force], N·m, N.
+/// to X. All are at the handle's origin Ho in one frame; [torque; force], N·m,
+/// N.
 struct LocalWrench {
   Vec6 F = Vec6::Zero();
   PoseVector X = PoseVector::Unit(0);
@@ -24,50 +25,50 @@ struct LocalWrench {
   }
 };
 
-/// How long a wrench is shown that is not renewed, s.
+/// Times of holding, releasing and engaging a wrench, s.
 struct ServoTimes {
-  double hold = 0.02;     ///< in full
-  double release = 0.02;  ///< from full force to none after that
-  double engage = 0.2;    ///< from none to full force when it is renewed
+  double hold = 0.02;     ///< in full force without renewal
+  double release = 0.02;  ///< then from full force to none
+  double engage = 0.2;    ///< from none to full force after renewal
 
   /// @throws std::invalid_argument unless all are finite and above zero.
   void Check() const;
 };
 
-/// What a fast loop shows between the ticks of a slow one: the last local
-/// wrench, within limits, and nothing once it is not renewed. Time is an
-/// argument; the law knows no clock and no thread.
+/// Computes the wrench that a fast loop shows between the ticks of a slow one:
+/// the last local wrench, within limits, and zero if it is not renewed. Time is
+/// an argument; the law has no clock and no thread.
 ///
-/// With s the part of the wrench that is shown, F = limit(s limit(F(X, V)) −
-/// 4 s (1 − s) D V). The damping D acts on the way between none and all of the
-/// force only: a handle that was released has drifted, and would be thrown
-/// back by a spring that engages undamped. docs/servo.md has measurements.
+/// With s the share of the wrench that is shown,
+/// F = limit(s limit(F(X, V)) − 4 s (1 − s) D V). The damping D acts only
+/// between no force and full force: a released handle has drifted, and a spring
+/// that engages undamped would throw it back. docs/servo.md has measurements.
 class ServoLaw {
  public:
   /// @throws std::invalid_argument unless the times are finite and above zero.
   explicit ServoLaw(const ServoTimes& times);
 
-  /// Largest norms that `Step` answers with, N and N·m: none before this is
-  /// called. What is negative or NaN counts as zero.
+  /// Sets the largest norms of force and torque that `Step` returns, N and N·m;
+  /// both are zero before. Negative limits and NaN count as zero.
   void SetLimits(double max_force, double max_torque);
 
-  /// Takes a new wrench. Of K and B only the passive part acts; see
-  /// `ProjectToPositiveSemidefinite`. One that is not finite ends all force at
-  /// once.
+  /// Takes a new wrench. Only the passive parts of K and B act; see
+  /// `ProjectToPositiveSemidefinite`. A wrench that is not finite ends all
+  /// force at once.
   void Adopt(const LocalWrench& wrench);
 
-  /// The wrench to show now, s, with the handle at X moving at V. Zero, at
-  /// once, where these are not finite.
+  /// Returns the wrench to show at the time `now` (s), with the handle at pose
+  /// X and velocity V; zero at once if these are not finite.
   Vec6 Step(double now, const PoseVector& X, const Vec6& V);
 
   /// Ends all force at once; the wrench engages from zero at the next step.
   void Release();
 
-  /// Part of the wrench that is shown, from 0 to 1.
+  /// Share of the wrench that is shown, from 0 to 1.
   double scale() const { return scale_; }
-  /// Wrenches and states that were not finite.
+  /// Number of wrenches and states that were not finite.
   std::int64_t num_not_finite() const { return num_not_finite_; }
-  /// Wrenches whose K or B was not passive.
+  /// Number of wrenches whose K or B was not passive.
   std::int64_t num_not_passive() const { return num_not_passive_; }
 
  private:

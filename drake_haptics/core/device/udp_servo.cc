@@ -12,11 +12,11 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kHandshakePeriod = 0.05;  // s, of commands to a silent driver
-constexpr double kSilence = 0.5;           // s until a driver is gone
-constexpr double kPatience = 0.01;         // s until the thread looks around
-constexpr int kMostPackets = 256;          // taken at once
+constexpr double kSilence = 0.5;           // s, after which a driver is gone
+constexpr double kPatience = 0.01;         // s, longest wait for a packet
+constexpr int kMostPackets = 256;          // packets taken at once
 constexpr int kPriority = 10;
-constexpr int kDisables = 5;  // commands at the end, in case of loss
+constexpr int kDisables = 5;  // disabling commands at the end, in case of loss
 constexpr auto kDisablePause = std::chrono::milliseconds(4);
 
 std::uint32_t DrawSession() {
@@ -93,8 +93,8 @@ void UdpServo::Run() {
   try {
     Serve();
   } catch (...) {
-    // Nothing here throws by design; if it does, the device ends at zero force
-    // and the status says that the thread is gone.
+    // Nothing here throws by design. If it does, the device ends at zero force
+    // and the status says that the thread has ended.
   }
   Disable();
   report_.is_running = false;
@@ -118,7 +118,7 @@ void UdpServo::Serve() {
   }
 }
 
-// Takes all that is waiting; only the newest state is answered.
+// Takes all waiting packets; only the newest state is answered.
 bool UdpServo::Drain() {
   std::array<unsigned char, 512> buffer;
   bool renewed = false;
@@ -156,7 +156,8 @@ void UdpServo::Answer() {
   const HandleState& state = link_.state();
   Vec6 F = Vec6::Zero();
   if (link_.IsActive()) {
-    // In this order what is NaN stays so, and lets nothing through.
+    // In this order std::min keeps the device's NaN, which lets no force
+    // through.
     law_.SetLimits(std::min(state.max_force, options_.max_force),
                    std::min(state.max_torque, options_.max_torque));
     F = law_.Step(Now(), Eigen::Map<const PoseVector>(state.X.data()),

@@ -17,8 +17,8 @@
 namespace drake_haptics {
 
 struct UdpServoOptions {
-  double time_to_live = 0.05;  ///< s that the device shows a command unrenewed
-  double max_rate = 4000;      ///< Hz, of commands
+  double time_to_live = 0.05;  ///< time that the device shows a command, s
+  double max_rate = 4000;      ///< largest rate of commands, Hz
   /// Largest norms, N and N·m, where the device allows more.
   double max_force = std::numeric_limits<double>::infinity();
   double max_torque = std::numeric_limits<double>::infinity();
@@ -29,27 +29,27 @@ struct UdpServoOptions {
   void Check() const;
 };
 
-/// What a servo knows, at one moment.
+/// Counters and state of a servo at one moment.
 struct UdpServoStatus {
   LinkCounts counts;
-  std::int64_t sent = 0;             ///< commands
+  std::int64_t sent = 0;             ///< commands sent
   std::int64_t num_not_finite = 0;   ///< wrenches and states; see ServoLaw
   std::int64_t num_not_passive = 0;  ///< slopes; see ServoLaw
-  double scale = 0;                  ///< part of the wrench that is sent
-  bool is_running = false;           ///< not closed
-  bool is_heard = false;             ///< states are coming
-  bool is_active = false;            ///< a wrench may be shown
-  bool has_priority = false;         ///< the system grants a real-time thread
-  bool has_locked_memory = false;    ///< the system keeps it in memory
+  double scale = 0;                  ///< share of the wrench that is sent
+  bool is_running = false;           ///< whether the thread runs
+  bool is_heard = false;             ///< whether states are coming
+  bool is_active = false;            ///< whether a wrench may be shown
+  bool has_priority = false;         ///< whether the thread is real-time
+  bool has_locked_memory = false;    ///< whether it is locked in memory
 };
 
-/// Answers every state of a driver with a wrench from the last local one, on a
-/// thread of its own. `Publish`, `Read` and `status` never wait for it, nor it
-/// for them. It is bound to no clock: the driver's states are its ticks. After
-/// a pause it answers the newest state only.
+/// Answers every state of a driver with a wrench from the last local wrench, on
+/// its own thread. `Publish`, `Read` and `status` never wait for the thread,
+/// nor does it wait for them. It has no clock: the driver's states are its
+/// ticks. After a pause it answers only the newest state.
 class UdpServo {
  public:
-  /// Starts to look for the driver.
+  /// Starts the thread, which looks for the driver.
   /// @throws std::invalid_argument for options out of range.
   /// @throws std::runtime_error if there is no such host, or no socket.
   UdpServo(const std::string& host, std::uint16_t port,
@@ -66,29 +66,30 @@ class UdpServo {
     return state_box_.ReadNewer(seen, state);
   }
 
-  /// Shows a wrench from now on; the first enables the device. One thread only.
+  /// Shows a wrench from now on; the first one enables the device. One thread
+  /// only.
   void Publish(const LocalWrench& wrench) { Publish(wrench, Now()); }
 
-  /// The same, of a loop that has last gone on at `time` by our clock, s.
+  /// The same for a loop whose last tick was at `time` by our clock, s.
   void Publish(const LocalWrench& wrench, double time);
 
-  /// Our clock, s. Any thread.
+  /// Time by our clock, s. Any thread.
   double Now() const;
 
-  /// Takes up again after a fault.
+  /// Recovers from a fault.
   void Recover();
 
-  /// Disables the device and ends the thread, in about 20 ms; later calls do
+  /// Disables the device and ends the thread, in about 30 ms; later calls do
   /// nothing. Any thread.
   void Close() { thread_.Close(); }
 
-  /// One thread only.
+  /// Newest status. One thread only.
   UdpServoStatus status();
   const LatenessHistogram& lateness() const { return lateness_; }
   std::uint16_t local_port() const { return socket_.local_port(); }
 
  private:
-  // F, X, V, K, B, time: as plain memory, which can cross threads.
+  // [F, X, V, K, B, time] as plain memory, which can cross threads.
   using PlainWrench = std::array<double, 6 + 7 + 6 + 36 + 36 + 1>;
 
   void Run();
@@ -106,22 +107,22 @@ class UdpServo {
   const std::chrono::steady_clock::time_point epoch_;
   UdpSocket socket_;
 
-  // To the thread.
+  // Written for the servo's thread.
   Seqlock<PlainWrench> wrench_box_;
   std::atomic<bool> recover_{false};
 
-  // From the thread.
+  // Written by the servo's thread.
   Seqlock<HandleState> state_box_;
   Seqlock<UdpServoStatus> status_box_;
   LatenessHistogram lateness_;
 
-  // Of the one thread that reads.
+  // Used only by the thread that reads.
   HandleState read_;
   std::uint64_t read_seen_ = 0;
   UdpServoStatus status_;
   std::uint64_t status_seen_ = 0;
 
-  // Of the thread alone.
+  // Used only by the servo's thread.
   DeviceLink link_;
   ServoLaw law_;
   AnswerLateness answer_lateness_;

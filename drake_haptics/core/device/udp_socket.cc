@@ -34,7 +34,7 @@ Addresses Resolve(const std::string& host, std::uint16_t port) {
   return {found, &freeaddrinfo};
 }
 
-// Drivers commonly listen by IPv4, also where "localhost" means both.
+// Drivers commonly listen on IPv4 alone, even where "localhost" means both.
 const addrinfo& Choose(const addrinfo* addresses) {
   for (const addrinfo* a = addresses; a != nullptr; a = a->ai_next) {
     if (a->ai_family == AF_INET) return *a;
@@ -62,8 +62,8 @@ UdpSocket::UdpSocket(const std::string& host, std::uint16_t port) {
 UdpSocket::~UdpSocket() { close(descriptor_); }
 
 void UdpSocket::Send(std::span<const unsigned char> packet) {
-  // A peer that is not there yet is told as an error of this call or the next;
-  // UDP promises nothing either way.
+  // An error of this call or a later one may say that the peer is missing. It
+  // is ignored, since UDP promises nothing either way.
   [[maybe_unused]] const ssize_t sent =
       send(descriptor_, packet.data(), packet.size(), 0);
 }
@@ -71,8 +71,8 @@ void UdpSocket::Send(std::span<const unsigned char> packet) {
 std::ptrdiff_t UdpSocket::Receive(std::span<unsigned char> buffer) {
   const ssize_t size = recv(descriptor_, buffer.data(), buffer.size(), 0);
   if (size >= 0) return size;
-  // The one error that is not the socket's: nobody listened to what we sent.
-  // It is told once, and packets may wait behind it.
+  // The only error that is not the socket's own: nobody listened to a packet
+  // that we sent. It is reported once, and packets may wait behind it.
   if (errno != ECONNREFUSED) return -1;
   return std::max<ssize_t>(-1,
                            recv(descriptor_, buffer.data(), buffer.size(), 0));

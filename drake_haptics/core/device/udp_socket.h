@@ -7,26 +7,28 @@
 
 namespace drake_haptics {
 
-/// A UDP socket to one peer. What others send is dropped by the system. No call
-/// but the constructor waits.
+/// A UDP socket to one peer. The system drops packets of others. Only the
+/// constructor and `Wait` block.
 class UdpSocket {
  public:
-  /// Opens a socket on a free port. Of the addresses of a name the first of
-  /// IPv4 is taken, else of IPv6. Waits for the name to be found.
+  /// Opens a socket on a free port, to the first IPv4 address of the host, or
+  /// to its first IPv6 address if it has no other. Waits until the name is
+  /// resolved.
   /// @throws std::runtime_error if there is no such host, or no socket.
   UdpSocket(const std::string& host, std::uint16_t port);
   ~UdpSocket();
   UdpSocket(const UdpSocket&) = delete;
   UdpSocket& operator=(const UdpSocket&) = delete;
 
-  /// Sends one packet; if the system cannot now, it is lost as on the way.
+  /// Sends one packet. If the system cannot send it now, it is lost, as on the
+  /// network.
   void Send(std::span<const unsigned char> packet);
 
   /// Receives one packet, cut to the size of the buffer.
-  /// @returns its size; −1 if none is waiting.
+  /// @returns the packet's size; −1 if none is waiting.
   std::ptrdiff_t Receive(std::span<unsigned char> buffer);
 
-  /// Waits until a packet is there or `timeout` s are over, rounded up to ms.
+  /// Waits until a packet is there, or for `timeout` s, rounded up to ms.
   void Wait(double timeout) const;
 
   /// Our own port.

@@ -10,7 +10,7 @@
 
 namespace drake_haptics {
 
-/// A tree of boxes over items with boxes, for "which of them overlap this box".
+/// Tree of bounding boxes of items, for overlap and nearest-point queries.
 class AabbTree {
  public:
   using Box = Eigen::AlignedBox3d;
@@ -18,8 +18,8 @@ class AabbTree {
   explicit AabbTree(std::vector<Box> item_boxes);
 
   /// Calls `visit(item)` for items whose boxes are nearer to `point` than the
-  /// squared distance, m², that the call before returned, those in nearer boxes
-  /// rather before those in farther ones.
+  /// squared distance, m², that the previous call returned. Nearer boxes tend
+  /// to come first.
   template <typename Visit>
   void VisitNear(const Eigen::Vector3d& point, const Visit& visit) const {
     double limit = std::numeric_limits<double>::infinity();

@@ -30,7 +30,7 @@ std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
 
 bool MeetsInterior(const std::array<Vec3, 3>& triangle,
                    std::span<const Plane> planes, double inset) {
-  // Most neighbors of the body are beyond one of its planes.
+  // Most triangles near the body are beyond one of its planes.
   for (const Plane& plane : planes) {
     if (std::all_of(triangle.begin(), triangle.end(),
                     [&](const Vec3& p) { return plane.Height(p) >= -inset; })) {

@@ -14,8 +14,8 @@ double PolygonArea(std::span<const Vec3> polygon);
 std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
                               std::span<const Plane> planes, double inset);
 
-/// Whether a triangle meets the interior of a convex body that is more than
-/// `inset` below all of its planes.
+/// Whether a triangle meets the part of a convex body that is more than `inset`
+/// below all of its planes.
 [[nodiscard]] bool MeetsInterior(const std::array<Vec3, 3>& triangle,
                                  std::span<const Plane> planes, double inset);
 

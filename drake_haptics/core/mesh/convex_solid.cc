@@ -12,7 +12,7 @@ namespace {
 // Relative to the component's size.
 constexpr double kConvexTolerance = 1e-6;
 
-// The boundary of a component's hull, to ask what is near it.
+// The boundary of a component's hull, to test what is near it.
 class HullBoundary {
  public:
   HullBoundary(std::span<const Vec3> points, const AffineBasis& basis) {
@@ -27,7 +27,7 @@ class HullBoundary {
     for (std::size_t p = 0; p < points.size(); ++p) start_[p + 1] += start_[p];
   }
 
-  // Near one plane with all corners: the whole triangle is near the boundary.
+  // If all corners are near one plane, the whole triangle is near the boundary.
   // Mostly that plane is at one of its corners.
   bool IsNear(const std::array<int, 3>& triangle, std::span<const Vec3> points,
               double tolerance) const {
@@ -50,7 +50,7 @@ class HullBoundary {
   std::vector<Plane> planes_;
   std::vector<std::pair<int, int>>
       corners_;             // Point, and a plane there; sorted.
-  std::vector<int> start_;  // Of each point in corners_.
+  std::vector<int> start_;  // Start of each point in corners_.
 };
 
 bool BoundsMaterial(const SurfaceMesh& mesh, std::span<const int> triangles) {

@@ -3,20 +3,20 @@
 // Convex Surface Decomposition", 2001):
 //
 // - It shares a manifold edge with the patch, with the same winding.
-// - The planes of all triangles have all vertices of the patch on or below
-//   them, within the surface tolerance (see surface_mesh.h): all triangles are
-//   on the boundary of the patch's hull.
+// - All vertices of the patch are on or below the planes of all triangles,
+//   within the surface tolerance (see surface_mesh.h): all triangles are on the
+//   boundary of the patch's hull.
 // - No other triangle of the same solid meets the interior of the hull, which
 //   begins 4 tolerances below its surface. So the hull is in the solid: the
 //   wall of a cup does not become a filled cylinder.
-// - Each facet of the hull is all surface or not at all. So a planar patch is a
-//   convex polygon, without notches and holes.
+// - Each facet of the hull is all surface or none of it is. So a planar patch
+//   is a convex polygon, without notches and holes.
 // - Where the surface bounds no solid, the patch stays in one plane.
 //
-// A component that is convex but for noise is one patch (see convex_solid.h). A
-// triangle that would be on no original facet of its piece gets a piece of its
-// own. Noise apart, pieces lie in the solid; with it they leave it by no more
-// than 1e-6 of the mesh's size or ten tolerances, whichever is more.
+// A component that is convex except for noise is one patch (see
+// convex_solid.h). A triangle that would be on no original facet of its piece
+// gets a piece of its own. Pieces lie in the solid; with noise they leave it by
+// no more than 1e-6 of the mesh's size or ten tolerances, whichever is more.
 #include "mesh/decomposition.h"
 
 #include <algorithm>
@@ -135,7 +135,7 @@ Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
   const MeshTopology topology(result.vertices, result.triangles);
   const double tolerance = SurfaceTolerance(result.vertices, result.triangles);
   std::vector<std::vector<int>> patches = RequirePieces(piece_of_triangle);
-  // The list grows while it is worked on.
+  // The list grows in the loop.
   for (std::size_t i = 0; i < patches.size(); ++i) {
     SurfacePiece piece = MakeSurfacePiece(topology, patches[i], tolerance);
     while (!piece.lost.empty()) {

@@ -21,18 +21,19 @@ struct Decomposition {
   std::vector<int> piece_of_triangle;
 };
 
-/// The triangles of each of so many pieces; those of no piece are left out.
+/// Triangles of each of `num_pieces` pieces; those of no piece are left out.
 std::vector<std::vector<int>> TrianglesOfPieces(
     std::span<const int> piece_of_triangle, int num_pieces);
 
-/// Called now and then with the share done in [0, 1]; false stops the work.
+/// Called now and then with the share done in [0, 1]; stops the work if it
+/// returns false.
 using Progress = std::function<bool(double)>;
 
 /// Convex surface decomposition (paper, 5.3.1; Ehmann and Lin 2001): patches
 /// grown breadth first over the dual graph for as long as the patch is convex
 /// and its hull stays inside the solid. See decomposition.cc for the rules.
-/// `solid` tells for each triangle whether it bounds a solid (its component is
-/// closed and wound outward); the patches of others are kept flat-sided, since
+/// `solid` says for each triangle whether it bounds a solid (its component is
+/// closed and wound outward); the patches of other triangles are flat, since
 /// they have no inside. A solid that differs from its hull by noise alone is
 /// one piece. Pieces leave the solid by no more than 1e-6 of the mesh's size,
 /// or more in a mesh far from its origin in single precision (see
@@ -44,15 +45,17 @@ Decomposition DecomposeSurface(std::span<const Vec3> vertices,
                                std::span<const std::uint8_t> solid,
                                const Progress& progress = {});
 
-/// The same result from known labels (a cache), without the search. Triangles
-/// that would be on no original facet of their piece get pieces of their own.
+/// Makes the same result from known labels (a cache), without the search.
+/// Triangles that would be on no original facet of their piece get pieces of
+/// their own.
 Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
                                     std::span<const Triangle> triangles,
                                     std::span<const int> piece_of_triangle);
 
-/// Pieces made elsewhere (CoACD, or one hull): facets within `tolerance` (m)
-/// of the mesh, and facing as it does, are original, all others virtual. Where
-/// it is infinite, the pieces take the place of the mesh: all are original.
+/// Adopts pieces made elsewhere (CoACD, or one hull): facets within `tolerance`
+/// (m) of the mesh that face as it does are original, all others virtual. If
+/// the tolerance is infinite, the pieces replace the mesh: all facets are
+/// original.
 Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
                                 std::span<const Triangle> triangles,
                                 std::span<const std::vector<Vec3>> pieces,

@@ -26,7 +26,8 @@ class Search {
         triangles_(of.triangles),
         pieces_(of.pieces),
         piece_of_triangle_(of.piece_of_triangle),
-        // Twice as far as a triangle may be from its facet.
+        // Twice the distance within which hull triangles are merged into a
+        // facet.
         tolerance_(2 * kFacetTolerances *
                    SurfaceTolerance(of.vertices, of.triangles)) {}
 
@@ -43,7 +44,7 @@ class Search {
       const FacetSide of_p = FindSide(pieces_[p], at_edge[0]);
       const FacetSide of_q = FindSide(pieces_[q], at_edge[1]);
       if (of_p.side < 0 || of_q.side < 0) return;
-      // Sine of the angle by which they rise above each other.
+      // Sine of the angle by which the facets rise above each other.
       const Polytope& Q = pieces_[q];
       const double rise = -pieces_[p].facets[of_p.facet].normal.dot(
           Q.facet_loop_side[Q.facet_loop_start[of_q.facet] + of_q.side]);
@@ -132,7 +133,7 @@ FacetNeighbors::FacetNeighbors(const Decomposition& decomposition) {
   }
   std::sort(found.begin(), found.end(),
             [](const auto& p, const auto& q) { return KeyOf(p) < KeyOf(q); });
-  // A side may be a chain of edges of the mesh.
+  // A side may be a chain of mesh edges, each of which adds the neighbor.
   found.erase(std::unique(found.begin(), found.end(),
                           [](const auto& p, const auto& q) {
                             return KeyOf(p) == KeyOf(q);

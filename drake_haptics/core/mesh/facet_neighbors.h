@@ -9,29 +9,29 @@ namespace drake_haptics {
 
 /// The facet of another piece across a side of a facet.
 struct FacetNeighbor {
-  int side = -1;   ///< of the facet itself, which of its loop's edges
-  int piece = -1;  ///< of the neighbor
+  int side = -1;   ///< index of the side in the facet's own loop
+  int piece = -1;  ///< piece of the neighbor
   int facet = -1;
   int side_of_neighbor = -1;  ///< the same edge in the neighbor's loop
-  bool is_flush = false;      ///< both lie in one plane; else it is concave
+  bool is_flush = false;      ///< in one plane; else the edge is concave
 };
 
-/// The facets on the surface of a decomposition that go on in other pieces
-/// across a concave or a flush edge, with the facets there. Facets that meet in
-/// a convex edge are no neighbors.
+/// Neighbors of the facets of a decomposition: facets of other pieces, in which
+/// the surface continues across a concave or a flush edge. Facets that meet in
+/// a convex edge are not neighbors.
 class FacetNeighbors {
  public:
   FacetNeighbors() = default;
 
-  /// Of pieces that were made from the triangles of a mesh; of others there are
-  /// none.
+  /// Finds the neighbors of pieces that were made from the triangles of a mesh;
+  /// other pieces have none.
   explicit FacetNeighbors(const Decomposition& decomposition);
 
-  /// Of all pieces; zero where there is not one neighbor.
+  /// Number of facets of all pieces; zero if no facet has a neighbor.
   int num_facets() const {
     return first_facet_.empty() ? 0 : first_facet_.back();
   }
-  /// Place of a facet among those of all pieces.
+  /// Index of a facet among the facets of all pieces.
   /// @pre num_facets() > 0.
   int PlaceOf(int piece, int facet) const {
     return first_facet_[piece] + facet;
@@ -44,8 +44,8 @@ class FacetNeighbors {
   }
 
  private:
-  std::vector<int> first_facet_;  // of each piece, and the number of all
-  std::vector<int> start_;        // in neighbors_, by the place of the facet
+  std::vector<int> first_facet_;  // first facet of each piece; then the count
+  std::vector<int> start_;        // start of each facet in neighbors_
   std::vector<FacetNeighbor> neighbors_;
 };
 

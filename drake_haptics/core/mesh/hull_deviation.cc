@@ -16,7 +16,7 @@ std::vector<Plane> FacetPlanes(std::span<const Vec3> points,
                                const HullShape& hull) {
   std::vector<Plane> planes;
   for (const HullShape::Polygon& polygon : hull.polygons) {
-    // All corners below, so that round-off does not bury them.
+    // No corner is above its plane, so that round-off does not bury it.
     double offset = -std::numeric_limits<double>::infinity();
     for (const int v : polygon.loop) {
       offset = std::max(offset, polygon.normal.dot(points[v]));
@@ -26,7 +26,7 @@ std::vector<Plane> FacetPlanes(std::span<const Vec3> points,
   return planes;
 }
 
-// A bound on the depth of the triangle's deepest point, if above `known`.
+// Upper bound on the depth of the triangle's deepest point, at least `known`.
 double BoundDepth(const std::array<Vec3, 3>& triangle,
                   std::span<const Plane> planes, double known) {
   double bound = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ double BoundDepth(const std::array<Vec3, 3>& triangle,
   return bound;
 }
 
-// A bound on how deep any of the surface lies in a solid hull.
+// Upper bound on the depth of the surface in a solid hull, m.
 double BoundBuried(std::span<const Vec3> points, const HullShape& hull,
                    const SurfaceDistance& surface, double limit,
                    double negligible) {

@@ -18,19 +18,20 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Share of the allowed error below which a departure counts as this share.
+// Share of the allowed error below which departures are not resolved.
 constexpr double kNegligible = 0.1;
 
-// Pieces that have become one.
+// Pieces merged into one.
 struct Group {
-  std::vector<int> corners;  // extreme points of the hull, mesh vertices
-  // Neighbors, and a bound below which the hull with them cannot depart: a
-  // hull of more points departs no less.
+  std::vector<int> corners;  // extreme points of the hull, as mesh vertices
+  // Neighbors, with a lower bound on the departure of the joint hull: a hull of
+  // more points departs no less.
   std::map<int, double> neighbors;
   int parent = -1;
 };
 
-// Two groups; a joint hull departs by `departure`, or more where not yet known.
+// Two groups. Their joint hull departs by `departure`, or more if not yet
+// known.
 struct Candidate {
   double departure;
   int a, b;
@@ -210,8 +211,8 @@ void CheckPieces(std::span<const Vec3> vertices,
   }
 }
 
-// Whether going from `from` by `way` one meets the surface first from its
-// front, and not too steeply.
+// Whether the segment from `from` to `from` + `way` first meets the front of
+// the surface, and not at a grazing angle.
 bool MeetsFront(const SurfaceDistance& surface, const Vec3& from,
                 const Vec3& way) {
   constexpr double kLeastCosine = 0.17;  // 80 degrees
@@ -237,9 +238,9 @@ bool MeetsFront(const SurfaceDistance& surface, const Vec3& from,
   return cosine > kLeastCosine;
 }
 
-// Whether a triangle of a merged hull stands for the mesh: below most of a grid
-// of its points the first that comes, no deeper than `depth`, is the front of
-// the mesh. So what is inside of the solid does not.
+// Whether a triangle of a merged hull stands for the mesh: below at least half
+// of a grid of its points, the first surface within `depth` is the front of the
+// mesh. So a triangle inside the solid does not.
 bool StandsForMesh(const SurfaceDistance& surface,
                    const std::array<Vec3, 3>& corners, const Vec3& normal,
                    double depth, double tolerance) {

@@ -7,7 +7,7 @@
 
 namespace drake_haptics {
 
-/// Some triangles of a mesh, to ask how much of a convex polygon they cover.
+/// Measures how much of a convex polygon some triangles of a mesh cover.
 class MeshCoverage {
  public:
   /// @param vertices, triangles of the mesh; they must outlive this.
@@ -16,8 +16,8 @@ class MeshCoverage {
                std::span<const Triangle> triangles,
                std::span<const int> members);
 
-  /// Area, m², of the triangles that face as the polygon does and are within
-  /// `tolerance` (m) of it, counted where they are above or below it.
+  /// Area, m², of the triangles that face as the polygon does, clipped to the
+  /// prism within `tolerance` (m) above and below the polygon.
   /// @param polygon corners, counter-clockwise about the unit `normal`.
   double CoveredArea(std::span<const Vec3> polygon, const Vec3& normal,
                      double tolerance) const;

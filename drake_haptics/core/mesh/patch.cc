@@ -7,8 +7,9 @@
 namespace drake_haptics {
 namespace {
 
-// A vertex this near to a facet's plane belongs to the facet. It is more than
-// the tolerance of the final hull's facets, so that each of those was checked.
+// A vertex within this many tolerances of a facet's plane belongs to the facet.
+// It is more than for facets of the final hull, so that each of those is
+// checked.
 constexpr double kOnPlaneTolerances = 4;
 
 }  // namespace
@@ -63,7 +64,7 @@ Patch::Outcome Patch::Check(const Sizes& before) {
   if (!(solid ? IsSupported(before) : IsOneSided(before))) {
     return Outcome::kNever;
   }
-  // Facets that got a new vertex, and new facets.
+  // Check facets with a new vertex, and new facets.
   const std::size_t num_vertices = vertices_.size();
   const std::size_t num_regions = regions_.size();
   for (std::size_t r = 0; r < num_regions; ++r) {
@@ -78,7 +79,7 @@ Patch::Outcome Patch::Check(const Sizes& before) {
   return Outcome::kAdded;
 }
 
-// Each triangle's plane has all vertices of the patch on or below it.
+// Whether all vertices of the patch are on or below each triangle's plane.
 bool Patch::IsSupported(const Sizes& before) const {
   const auto supports = [&](int region, std::size_t first_vertex) {
     const Plane& plane = mesh_.regions[region].plane;
@@ -94,7 +95,7 @@ bool Patch::IsSupported(const Sizes& before) const {
   return true;
 }
 
-// A surface without an inside is rendered by flat pieces.
+// Whether the patch is flat: a surface without an inside has flat pieces.
 bool Patch::IsOneSided(const Sizes& before) const {
   const Plane& plane = mesh_.regions[regions_[0]].plane;
   return std::all_of(vertices_.begin() + before.vertices, vertices_.end(),
@@ -108,8 +109,8 @@ bool Patch::IsOneSided(const Sizes& before) const {
                      });
 }
 
-// The hull's facet in the plane of a region is all surface: triangles of the
-// patch fill it, after taking those free ones that lie within it.
+// Whether triangles of the patch fill the hull's facet in the plane of a
+// region. The patch first takes free triangles that lie within the facet.
 bool Patch::FillFacet(int region) {
   const Plane& plane = mesh_.regions[region].plane;
   if (plane.normal.isZero()) return true;
@@ -167,7 +168,7 @@ std::vector<int> Patch::TrianglesInFacet(const Plane& plane) const {
   return result;
 }
 
-// Several planes may still make one flat hull, if they are as good as parallel.
+// Nearly parallel planes may still make one flat hull.
 bool Patch::FlatHullIsCovered(std::span<const Vec3> points) const {
   const Vec3& normal = mesh_.regions[regions_[0]].plane.normal;
   if (regions_.size() == 1 || normal.isZero()) return true;

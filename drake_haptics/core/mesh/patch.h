@@ -11,7 +11,7 @@
 
 namespace drake_haptics {
 
-/// What all patches of a mesh share while they grow.
+/// Data that all patches of a mesh share while they grow.
 struct PatchBuffers {
   explicit PatchBuffers(const SurfaceMesh& mesh);
 
@@ -21,18 +21,18 @@ struct PatchBuffers {
   std::vector<int> vertex_label;  ///< patch that took each vertex last
 };
 
-/// A convex patch of the surface that takes triangles for as long as its hull
-/// remains a part of the solid and touches the surface in the patch alone.
+/// A convex patch of the surface that grows for as long as its hull stays
+/// inside the solid and touches the surface only in the patch.
 class Patch {
  public:
   enum class Outcome {
     kAdded,
-    kNotNow,  ///< would leave a facet half covered; later it may not
-    kNever,   ///< not convex or not inside the solid; growing cannot mend that
+    kNotNow,  ///< would leave a facet half covered; may succeed later
+    kNever,   ///< not convex or not inside the solid; growth cannot fix that
   };
 
   /// @param label number of this patch.
-  /// @param triangles to start with: a triangle, or a convex planar region.
+  /// @param triangles first triangles: one, or a convex planar region.
   Patch(PatchBuffers* work, int label, std::span<const int> triangles);
 
   /// Adds triangles that are all free, or leaves the patch as it is. To
@@ -63,7 +63,7 @@ class Patch {
   int label_;
   std::vector<int> triangles_;
   std::vector<int> vertices_;
-  std::vector<int> regions_;        // Planar regions that it has a part of.
+  std::vector<int> regions_;  // Planar regions that the patch has a part of.
   std::optional<ConvexHull> hull_;  // None while the patch is flat.
 };
 

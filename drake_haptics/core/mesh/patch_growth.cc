@@ -13,7 +13,7 @@
 namespace drake_haptics {
 namespace {
 
-// Passes progress on at a pace that costs nothing.
+// Reports progress at a rate that costs nothing.
 class ProgressReport {
  public:
   ProgressReport(const Progress& progress, std::size_t total)
@@ -86,7 +86,8 @@ class Growth {
         planes, box, mesh_.component[triangles[0]], work_.label, num_patches_);
   }
 
-  // All of the triangle's planar region if that is a free convex polygon.
+  // The triangle's whole planar region if it is a free convex polygon, else
+  // none.
   std::span<const int> WholeRegion(int triangle) const {
     const PlanarRegion& region = mesh_.regions[mesh_.region[triangle]];
     const bool is_free =
@@ -111,8 +112,7 @@ class Growth {
         }
         report_.Report(num_done_ + num_searched);
       }
-      // A facet that could not be completed when the patch was smaller may be
-      // now.
+      // A facet that a smaller patch could not complete may be complete now.
       if (not_now.empty() || num_retried == num_searched) break;
       num_retried = num_searched;
       for (const int t : std::exchange(not_now, {})) Try(t, &patch, &not_now);
@@ -141,9 +141,9 @@ class Growth {
   }
 
   // Triangles without a plane that no patch took, and that would be pieces
-  // without a side, go to a patch across one of their two long edges. That edge
-  // is an edge of the patch, so that the hull grows by the triangle's height at
-  // most. Needles may lie behind needles: those beside a patch go first.
+  // without a facet, join a patch across one of their two long edges. That edge
+  // is an edge of the patch, so that the hull grows by at most the triangle's
+  // height. Needles may lie behind needles: those beside a patch go first.
   void AttachNeedles() {
     std::vector<std::uint8_t> has_side(num_patches_, false);
     for (std::size_t t = 0; t < work_.label.size(); ++t) {

@@ -7,7 +7,7 @@
 
 namespace drake_haptics {
 
-/// Divides a surface into convex patches: the number of each triangle's patch.
+/// Divides a surface into convex patches. Returns the patch of each triangle.
 /// Patches grow breadth first over the dual graph from the largest free
 /// triangle; a component that is convex as a whole is one patch.
 /// @throws std::runtime_error when `progress` asked to stop.

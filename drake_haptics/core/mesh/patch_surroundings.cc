@@ -9,7 +9,7 @@
 namespace drake_haptics {
 namespace {
 
-// The mesh around a piece, as wings and rings tell it.
+// Sets the wings and rings of a piece from the mesh around it.
 class SurfaceAround {
  public:
   SurfaceAround(const MeshTopology& mesh, std::span<const int> patch,
@@ -20,7 +20,7 @@ class SurfaceAround {
         tolerance_(tolerance),
         piece_(*piece) {}
 
-  // Beyond an edge with one original facet the mesh goes on.
+  // The mesh continues beyond an edge with one original facet.
   void SetOuterWings() {
     for (Polytope::Edge& edge : piece_.edges) {
       if (edge.left < 0) continue;
@@ -51,7 +51,8 @@ class SurfaceAround {
   }
 
  private:
-  // Direction in a mesh triangle away from the piece's edge on its side.
+  // Direction in a mesh triangle away from the piece's edge, perpendicular to
+  // it.
   Vec3 WingOf(int triangle, const Polytope::Edge& edge) const {
     const Vec3& base = piece_.vertices[edge.v0];
     const Vec3 along = (piece_.vertices[edge.v1] - base).stableNormalized();
@@ -68,8 +69,8 @@ class SurfaceAround {
     return std::binary_search(patch_.begin(), patch_.end(), triangle);
   }
 
-  // Of the mesh faces beyond the edge the one that rises most above the facet:
-  // it leaves the fewest directions in which the surface is supported.
+  // Wing in the mesh face beyond the edge that rises most above the facet: it
+  // leaves the fewest directions in which the surface is supported.
   Vec3 OuterWing(const Polytope::Edge& edge, const Vec3& facet_normal) const {
     Vec3 best = Vec3::Zero();
     const auto consider = [&](std::span<const TriangleSide> sides) {

@@ -9,7 +9,7 @@
 
 namespace drake_haptics {
 
-/// The mesh around its vertices and edges, in m.
+/// The triangles around the vertices and edges of a mesh, positions in m.
 struct MeshTopology {
   MeshTopology(std::span<const Vec3> vertices,
                std::span<const Triangle> triangles);
@@ -29,16 +29,17 @@ struct MeshTopology {
 };
 
 /// Marks the edges of a piece whose facets are marked, and sets its wings and
-/// rings to those of the whole mesh, which goes on beyond the piece.
+/// rings to those of the whole mesh, which continues beyond the piece.
 /// @param patch triangles that the piece was made from.
 /// @param source mesh vertex of each vertex of the piece.
-/// @param tolerance distance, m, within which a mesh edge lies on the piece's.
+/// @param tolerance distance, m, within which a mesh edge lies on an edge of
+///     the piece.
 void ConnectToSurface(const MeshTopology& mesh, std::span<const int> patch,
                       std::span<const int> source, double tolerance,
                       Polytope* piece);
 
-/// An edge is on the surface exactly when a facet beside it is: facets that
-/// are original are bounded by mesh edges. Virtual edges have no wings.
+/// Marks an edge as original exactly if a facet beside it is: original facets
+/// are bounded by mesh edges. Virtual edges have no wings.
 void MarkEdgesFromFacets(Polytope* piece);
 
 }  // namespace drake_haptics

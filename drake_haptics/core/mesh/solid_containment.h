@@ -17,7 +17,7 @@ class SolidContainment {
  public:
   explicit SolidContainment(const SurfaceMesh& mesh);
 
-  /// Whether a triangle of another label than `label` meets, within `box`, the
+  /// Whether a triangle in `box` with a label other than `label` meets the
   /// interior of the body below `planes`. The interior begins a few tolerances
   /// below the surface, so that the patch's neighbors do not count.
   bool MeetInterior(std::span<const Plane> planes, const AabbTree::Box& box,
@@ -27,7 +27,7 @@ class SolidContainment {
  private:
   const SurfaceMesh& mesh_;
   AabbTree tree_;
-  std::vector<std::uint8_t> is_cavity_;  // Of each component.
+  std::vector<std::uint8_t> is_cavity_;  // For each component.
 };
 
 }  // namespace drake_haptics

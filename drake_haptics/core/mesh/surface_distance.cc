@@ -11,8 +11,8 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kExcess = 1.05;
-// Share of the size. Flat places that are divided otherwise are as near as that
-// only once their parts are as small.
+// Negligible distance as a share of the size. Flat areas with different
+// triangles are proven to be that near only by parts of that size.
 constexpr double kNegligibleShare = 1e-4;
 
 double AngleAt(const Vec3& corner, const Vec3& a, const Vec3& b) {
@@ -116,7 +116,7 @@ SurfaceDistance::Part SurfaceDistance::Bound(const std::array<Vec3, 3>& corners,
   for (const Vec3& corner : corners) {
     radius = std::max(radius, (corner - middle).norm());
   }
-  // A distance changes no faster than the place.
+  // The distance changes no faster than the position.
   double bound = std::max(0.0, nearest.distance + radius);
   if (bound > enough) {
     bound = std::min(bound, FarthestFromTriangle(nearest.triangle, corners));
@@ -133,8 +133,8 @@ double SurfaceDistance::BoundFarthest(
     open.push_back(Bound(triangle, negligible, &largest));
     if (largest > limit) return largest;
   }
-  // The part that could be farthest is divided first, so that where others
-  // are nearer nothing is looked at closely.
+  // The part with the largest bound is divided first, so that nearer parts stay
+  // whole.
   const auto is_lower = [](const Part& a, const Part& b) {
     return a.bound < b.bound;
   };
@@ -145,7 +145,7 @@ double SurfaceDistance::BoundFarthest(
     std::pop_heap(open.begin(), open.end(), is_lower);
     const std::array<Vec3, 3> part = open.back().corners;
     open.pop_back();
-    // Across the longest side, so that slivers become round.
+    // Cut the longest side, so that slivers become round.
     int longest = 0;
     for (int k = 1; k < 3; ++k) {
       if ((part[(k + 1) % 3] - part[k]).squaredNorm() >

@@ -11,10 +11,10 @@
 
 namespace drake_haptics {
 
-/// Distances from the surface of a mesh. Of a part that bounds a solid the
-/// inside is at negative distance, told by the pseudo-normals of J. A.
-/// Bærentzen and H. Aanæs, "Signed Distance Computation Using the Angle
-/// Weighted Pseudonormal", 2005; that is exact where parts do not overlap.
+/// Distances from the surface of a mesh. Inside a part that bounds a solid the
+/// distance is negative, by the pseudo-normals of J. A. Bærentzen and H. Aanæs,
+/// "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005;
+/// this is exact where parts do not overlap.
 class SurfaceDistance {
  public:
   /// @param vertices, triangles of the mesh, m; they must outlive this.
@@ -29,10 +29,10 @@ class SurfaceDistance {
   };
   Nearest FindNearest(const Vec3& p) const;
 
-  /// A bound, m, on how far any point of some triangles is outside of the
-  /// surface: above the largest distance by no more than 5%, or `negligible`,
+  /// Upper bound, m, on the distance of any point of some triangles outside the
+  /// surface, above the largest distance by no more than 5% or `negligible`,
   /// which must be positive.
-  /// @param limit above it the search ends; what it returns is above it too.
+  /// @param limit m; above it the search ends early, with a result above it.
   double BoundFarthest(std::span<const std::array<Vec3, 3>> triangles,
                        double limit, double negligible) const;
 
@@ -46,7 +46,7 @@ class SurfaceDistance {
   const Vec3& area_vector_of(int t) const { return area_vectors_[t]; }
 
  private:
-  // A triangle, or a part of one, and a bound on its largest distance.
+  // A triangle, or a part of one, and an upper bound on its distance.
   struct Part {
     double bound;
     std::array<Vec3, 3> corners;
@@ -63,8 +63,8 @@ class SurfaceDistance {
   AabbTree tree_;
 };
 
-/// A bound, m, on the largest distance of any point of either surface from the
-/// other (Hausdorff's distance), above it by no more than 5%, or 1e-4 of the
+/// Upper bound, m, on the largest distance of any point of either surface from
+/// the other (Hausdorff distance), above it by no more than 5% or 1e-4 of the
 /// size.
 double CalcSurfaceDistance(std::span<const Vec3> vertices_A,
                            std::span<const Triangle> triangles_A,

@@ -38,7 +38,7 @@ void AddPlanes(SurfaceMesh* mesh) {
     const Vec3 cross =
         TriangleCross(a, mesh->vertices[t[1]], mesh->vertices[t[2]]);
     mesh->areas.push_back(cross.norm() / 2);
-    // The plane of a thin triangle is noise, and would keep others out.
+    // The plane of a thin triangle is noise, and would exclude other triangles.
     const bool thin =
         cross.norm() <= kFacetTolerances * mesh->tolerance *
                             SideLength(*mesh, t, LongSides(*mesh, t)[0]);

@@ -12,9 +12,9 @@
 namespace drake_haptics {
 namespace {
 
-// A facet's plane goes through the largest triangle of the hull, that of a
-// patch through the largest triangle of the mesh, so that a triangle may be
-// twice as far from its facet as either is from its plane.
+// A facet's plane contains the largest triangle of the hull, a patch's plane
+// the largest triangle of the mesh. A triangle may thus be twice as far from
+// its facet as a triangle may be from either plane.
 constexpr double kOnFacetTolerances = 2 * kFacetTolerances;
 
 Vec3 AreaVector(const MeshTopology& mesh, int triangle) {
@@ -23,7 +23,7 @@ Vec3 AreaVector(const MeshTopology& mesh, int triangle) {
   return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a) / 2;
 }
 
-// A patch without a border is all of the hull's boundary.
+// Whether the patch has no border, and so is all of the hull's boundary.
 bool IsClosed(const MeshTopology& mesh, std::span<const int> patch) {
   return std::all_of(patch.begin(), patch.end(), [&](int t) {
     const Triangle& triangle = mesh.triangles[t];
@@ -40,7 +40,7 @@ bool IsClosed(const MeshTopology& mesh, std::span<const int> patch) {
   });
 }
 
-// The front of a flat hull is the side that the mesh faces to, and it is all
+// Makes the side that the mesh faces the front of a flat hull. It is all
 // surface: patches do not leave facets half covered.
 void TurnFrontToMesh(const Vec3& normal, HullShape* shape) {
   if (shape->dimension != 2) return;
@@ -82,7 +82,7 @@ bool LiesOnOriginalFacet(const MeshTopology& mesh, int triangle,
       });
 }
 
-// Whether original facets and triangles have the same area, but for slivers.
+// Whether original facets and triangles have the same area, except for slivers.
 bool HaveEqualAreas(const MeshTopology& mesh, std::span<const int> patch,
                     double tolerance, const Polytope& piece) {
   double patch_area = 0, facet_area = 0, perimeter = 0;
@@ -103,8 +103,8 @@ bool HaveEqualAreas(const MeshTopology& mesh, std::span<const int> patch,
          kRoundOff * patch_area + tolerance * perimeter;
 }
 
-// Triangles that lie on no original facet. All of them, if the facets stand for
-// more or less surface than there is.
+// Triangles that lie on no original facet, or all if the original facets have a
+// different area.
 std::vector<int> FindLost(const MeshTopology& mesh, std::span<const int> patch,
                           double tolerance, const Polytope& piece) {
   std::vector<int> lost;
@@ -137,9 +137,9 @@ SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
       closed ? FindHullShape(points, kFacetTolerances * tolerance)
              : FindOpenShape(mesh, patch, points, tolerance);
   SurfacePiece piece{MakePolytope(points, shape), {}};
-  // The hull of a closed patch is the surface: nothing goes on beyond it. Edges
-  // of the mesh that end at no corner of the hull, and may be shorter than it
-  // is exact, would tell otherwise.
+  // The hull of a closed patch is the whole surface. Mesh edges that end at no
+  // corner of the hull, and may be shorter than the hull is exact, would
+  // contradict that.
   if (closed && shape.extreme.size() < corners.size()) return piece;
   std::vector<int> source;
   for (const int i : shape.extreme) source.push_back(corners[i]);

@@ -7,11 +7,11 @@
 
 namespace drake_haptics {
 
-/// The polytope of a patch, which knows what of it is mesh.
+/// The polytope of a patch, with the features that are on the mesh marked.
 struct SurfacePiece {
   Polytope polytope;
-  /// Triangles of the patch that no original facet stands for, so that no
-  /// contact would find them. Only noise can cause them.
+  /// Triangles of the patch that are on no original facet, so that no contact
+  /// would find them. Only noise can cause them.
   std::vector<int> lost;
 };
 

@@ -5,7 +5,7 @@
 namespace drake_haptics {
 namespace {
 
-// A tick copies them from query to law.
+// A tick copies contacts from the query to the law.
 static_assert(sizeof(Contact) == 160);
 
 std::array<std::int32_t, 2> KindAndIndex(const Feature& feature) {

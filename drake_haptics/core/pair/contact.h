@@ -11,32 +11,31 @@
 
 namespace drake_haptics {
 
-/// One contact between a piece of the tool (A) and a piece of an object (B),
-/// in the world frame. Words and signs are those of Drake's
-/// SignedDistancePair.
+/// One contact between a piece of the tool (A) and a piece of an object (B), in
+/// the world frame. Names and signs are those of Drake's SignedDistancePair.
 template <typename T>
 struct ContactOf {
   T distance{0};        ///< m; > 0 apart, < 0 penetrating
   Vec3Of<T> nhat_BA_W;  ///< unit, out of B into A
   Vec3Of<T> p_WCa;      ///< witness point on A, m
   Vec3Of<T> p_WCb;      ///< witness point on B, m
-  Vec3Of<T> p_WC;       ///< their mean (Eq. 1), m
+  Vec3Of<T> p_WC;       ///< mean of the witness points (Eq. 1), m
   T extent{0};          ///< measure of the overlap, m² (contact_patch.h)
-  T flushness{0};       ///< share of it in flush faces and edges
-  /// Vertices of the pieces that support them along the normal.
+  T flushness{0};       ///< share of the contact in flush faces and edges
+  /// Support vertices of the pieces along the normal.
   std::array<std::int32_t, 2> support{};
   std::int32_t object = 0;
   std::int32_t piece_A = 0;
   std::int32_t piece_B = 0;
-  /// FeatureKind, index; -1 where none is known.
+  /// FeatureKind and index; -1 if unknown.
   std::array<std::int32_t, 2> feature_A{-1, -1};
   std::array<std::int32_t, 2> feature_B{-1, -1};
   std::int32_t status = 0;  ///< ContactStatus
 };
 using Contact = ContactOf<double>;
 
-/// Refuses a contact of no features, as of who finds contacts without convex
-/// pieces: it gives a force, but nothing tells how it moves or bends.
+/// Rejects a contact without features, which was found without convex pieces:
+/// it gives a force, but how it moves or bends is unknown.
 /// @throws std::invalid_argument.
 template <typename T>
 void RequireFeatures(const ContactOf<T>& contact);
@@ -46,7 +45,8 @@ void RequireFeatures(const ContactOf<T>& contact);
 Feature RequireFeature(const Polytope& piece,
                        const std::array<std::int32_t, 2>& kind_and_index);
 
-/// The contact of a pair as seen in the world, object and pieces left at zero.
+/// The contact of a pair in the world frame, with object and pieces left at
+/// zero.
 Contact InWorld(const PairContact& pair, const Pose& X_WA);
 
 /// The contacts of one tick, ordered by object, piece of A, piece of B.

@@ -42,7 +42,7 @@ std::span<const int> SidesOf(const Polytope& P, int facet) {
           P.loop_of(facet).size()};
 }
 
-// Whether the surface beyond a side of a facet rises above it.
+// Whether the surface beyond a side of a facet rises above the facet.
 bool IsConcave(const Polytope::Edge& side, const Polytope& P, int facet) {
   const Vec3& beyond = side.wings[side.left == facet ? 1 : 0];
   return beyond.dot(P.facets[facet].normal) > kSurfaceSlack;
@@ -68,7 +68,7 @@ class Patch {
 
   Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
-    // The first one is cut off at all its sides, so one that goes on is second.
+    // The first facet is cut at all its sides, so one that continues is second.
     if (GoesOn(pair_.A, facet_A)) {
       for (const int v : pair_.B.loop_of(facet_B)) {
         workspace_.polygon.push_back(plane_.To(pair_.b(v)));
@@ -92,8 +92,8 @@ class Patch {
     return Finish(of_A, CutByFacetOfB(facet_B), layer_ / spread_);
   }
 
-  // Edges fall away to their sides: where they cross under an angle they are
-  // the farther apart the farther from the crossing.
+  // Surfaces fall away beside their edges, so the gap between edges that cross
+  // at an angle grows with the distance from the crossing.
   Part OfEdges(int edge_A, int edge_B) {
     const Polytope::Edge& a = pair_.A.edges[edge_A];
     const Polytope::Edge& b = pair_.B.edges[edge_B];
@@ -114,8 +114,8 @@ class Patch {
       const double gap = x.z() - (p.z() + place(x) * along.z());
       return spread_ + h_ - gap - side * beside(x);
     };
-    // The pressure is the smaller of two linear functions: past the crossing
-    // the other side counts.
+    // The pressure is the smaller of two linear functions, one on either side
+    // of the crossing.
     workspace_.overlap = workspace_.polygon;
     Part whole;
     Vec3 moment = Vec3::Zero();
@@ -154,7 +154,7 @@ class Patch {
         pair_.X_AB.R * pair_.B.facets[facet].normal);
   }
 
-  // @param scale makes the integral of the pressure an extent.
+  // @param scale factor from the integral of the pressure to the extent.
   Part Finish(const Height& of_A, const Height& of_B, double scale) {
     for (Vec3& corner : workspace_.polygon) {
       corner.z() = spread_ + h_ - (of_A(corner) - of_B(corner));
@@ -166,7 +166,7 @@ class Patch {
             scale * load->integral};
   }
 
-  // The height of a segment is taken constant across it.
+  // The height is taken to be constant across the segment.
   Height StartFromSegment(const Vec3& p, const Vec3& q) {
     workspace_.polygon.clear();
     workspace_.polygon.push_back(plane_.To(p));
@@ -218,14 +218,14 @@ class Patch {
   const FacetEnd end_;
 };
 
-// Weighted mean over all features that share the contact. What has no overlap
-// leaves its share to the others.
+// Weighted mean over all features that share the contact. Features without
+// overlap leave their share to the others.
 struct Blend {
   double total = 0, rest = 1, extent = 0;
   Vec3 sum = Vec3::Zero();
 
-  /// @param share of what features of higher dimension leave.
-  /// @param left what they leave.
+  /// @param share share of the part that features of higher dimension leave.
+  /// @param left that part, as a share of the contact.
   void Add(const Part& part, double share, double left) {
     rest *= 1 - share;
     share *= left;
@@ -236,7 +236,7 @@ struct Blend {
   }
 };
 
-// How many edges at a vertex fall away from the plane by less than the layer.
+// Number of edges at a vertex that fall away from the plane within the layer.
 int CountFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
                     double layer) {
   const auto fan = P.fan_of(vertex);

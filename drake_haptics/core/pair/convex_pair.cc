@@ -12,12 +12,12 @@
 namespace drake_haptics {
 namespace {
 
-// A scene keeps one for each pair of pieces that are near each other.
+// A scene keeps one for each pair of nearby pieces.
 static_assert(sizeof(PairState) == 80);
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Thickness of the layer in which features count as flush, as a share of the
-// size: witness points stay on the bodies to that share.
+// size: witness points stay on the bodies to within this share.
 constexpr double kLayerShare = 1e-9;
 
 // Every facet of a solid counts, so a walk knows an answer from its first
@@ -50,7 +50,7 @@ class Query {
                : Touching(separation, is_apart);
   }
 
-  // Overlapping, or apart by so little that both answers are wanted.
+  // The pair overlaps, or is so little apart that both answers are needed.
   PairContact Touching(const Separation& separation, bool is_apart) {
     const Depth depth = FindDepth();
     const bool has_facet = depth.status != DepthStatus::kNoFacet;
@@ -85,8 +85,9 @@ class Query {
                               : ContactStatus::kPenetrating);
   }
 
-  // Where the bodies just touch, facets that only their planes share the touch
-  // with are as good as others; the closest points are on the bodies.
+  // Where the bodies just touch, a facet whose plane alone passes through the
+  // touching point is as shallow as others; the closest points are on the
+  // bodies.
   void StayOnBodies(const Separation& separation, PairContact* contact) {
     const double touch = kLayerShare * pair_.scale();
     if (std::abs(contact->distance) > touch ||
@@ -111,7 +112,7 @@ class Query {
             least.facet, least.facet.h, least.vertex_pair};
   }
 
-  // On coherent motion the last facet mostly still is the answer, and one
+  // Under coherent motion the last facet is mostly still the answer, and one
   // comparison proves it. Bodies that were apart enter through the facet that
   // their closest features span.
   Depth FindLocalDepth() {
@@ -139,7 +140,7 @@ class Query {
     const Depth depth =
         WalkDepth(pair_, vertex_pair, SurfaceRule::kWholeBoundary, nullptr,
                   kNoPromotion, &workspace_.depth);
-    // Round-off can hide every facet from where a walk began.
+    // Round-off can hide every facet from the start of a walk.
     return depth.status != DepthStatus::kNoFacet ? depth : FindColdDepth();
   }
 
@@ -166,7 +167,7 @@ class Query {
   PairState& state_;
   PairWorkspace& workspace_;
   GlobalDepthState* const global_;   // null where the depth is tracked
-  SimplexVertexPairs last_simplex_;  // of the tick before
+  SimplexVertexPairs last_simplex_;  // of the previous tick
 };
 
 }  // namespace

@@ -7,16 +7,16 @@
 
 namespace drake_haptics {
 
-/// Answers two convex solids at their present pose, warm from `state`, and
-/// renews it. Apart: the distance and closest features. Overlapping: the
-/// penetration depth. The two join at zero, where the larger support gap of
-/// both is the answer.
+/// Finds the contact of two convex solids at their present pose, warm-started
+/// from `state`, which it updates. Apart: the distance and closest features.
+/// Overlapping: the penetration depth. At zero, the one with the larger support
+/// gap is the answer.
 ///
 /// The depth is the locally optimal one (paper, 5.2), tracked from the last
-/// answer, or where `global` is given the least one of all (global_depth.h).
+/// answer, or the least one of all if `global` is given (global_depth.h).
 ///
-/// Where faces or a face and an edge lie flush, to a billionth of the size,
-/// the witness points are at the center of their overlap (contact_patch.h).
+/// If faces, or a face and an edge, are flush to a billionth of the size, the
+/// witness points are at the center of their overlap (contact_patch.h).
 [[nodiscard]] PairContact QueryConvexPair(const PosedPair& pair,
                                           PairState* state,
                                           PairWorkspace* workspace,

@@ -8,10 +8,10 @@
 namespace drake_haptics {
 namespace {
 
-// Height over a triangle's plane, as a share of the size, that is round-off.
+// Height above a triangle's plane that is round-off, as a share of the size.
 constexpr double kLevelShare = 1e-14;
 
-// Where on the rim of a patch a vertex pair is, if not once.
+// Rim positions of a vertex pair that is absent, or repeated.
 constexpr int kNowhere = -1, kRepeated = -2;
 
 }  // namespace
@@ -125,20 +125,20 @@ bool DepthCertificate::IsBelow(int t, const Vec3& at) {
   return height > 0 && height * height > flat_ * flat_ * normal.squaredNorm();
 }
 
-// Whether triangle t is on one side of the origin.
+// Whether triangle t is on the side of the origin that `above` points to.
 bool DepthCertificate::IsOnSide(int t, const Vec3& above) {
   return above.dot(point(t, 0)) > 0 && above.dot(point(t, 1)) > 0 &&
          above.dot(point(t, 2)) > 0;
 }
 
-// Whether the origin is not between triangle t and a point above both its
-// plane and the origin.
+// Whether the origin is not between triangle t and a point above both the
+// triangle's plane and the origin.
 bool DepthCertificate::IsClear(int t, const Vec3& above) {
   return point(t, 0).dot(point(t, 1).cross(point(t, 2))) > 0 ||
          IsOnSide(t, above);
 }
 
-// Lists the rim of the patch; false if the patch is not a disc.
+// Lists the rim of the patch; returns false if the patch is not a disc.
 bool DepthCertificate::TraceRim() {
   int count = 0, first = -1;
   for (const int t : patch_) {
@@ -171,13 +171,13 @@ int DepthCertificate::RimPosition(const MinkowskiVertex& vertex_pair) const {
   return position;
 }
 
-// Replaces the patch by the cone from a vertex, which may be on the rim itself
+// Replaces the patch by the cone from a vertex, which may be on the rim itself,
 // at `position`.
 void DepthCertificate::CoverPatch(int apex, int position) {
   added_.clear();
   const int count = static_cast<int>(rim_.size());
-  // Where the apex is on the rim itself, the two sides next to it have no
-  // triangle, and their neighbors join the cone's ends.
+  // If the apex is on the rim itself, the two sides next to it get no triangle,
+  // and their neighbors join the cone's ends.
   const bool on_rim = position >= 0;
   const int start = on_rim ? position + 1 : 0;
   const int num_sides = on_rim ? count - 2 : count;
@@ -197,7 +197,7 @@ void DepthCertificate::CoverPatch(int apex, int position) {
   for (const int t : patch_) RemoveTriangle(t);
 }
 
-// Of t and the triangles beside it, one that lies below the point.
+// The first of t and its neighbors that lies below the point; t if none does.
 int DepthCertificate::FindBelow(int t, const Vec3& at, const Vec3* above) {
   if (IsBelow(t, at)) return t;
   for (const int across : triangles_[t].twin) {
@@ -218,7 +218,7 @@ void DepthCertificate::GrowPatch(int t, const Vec3& apex, const Vec3* above) {
         continue;
       }
       if (!above) continue;
-      // Over this side the cone would turn its back to the origin.
+      // The cone's triangle over this side would have the origin outside.
       const Vec3& p = Point(origin(across));
       const Vec3& q = Point(origin(Next(across)));
       if (apex.dot(p.cross(q)) >= 0 && IsOnSide(other, *above)) {
@@ -241,15 +241,15 @@ bool DepthCertificate::Raise(int t, const MinkowskiVertex& vertex_pair,
     if (position == kRepeated) return false;
   }
   if (position >= 0 && rim_.size() == 3) {
-    // The apex is a corner already: what is left is to turn the side facing it.
+    // The apex is a corner already: only the side facing it can be turned.
     return above && TurnSide(twin(rim_outer_[(position + 1) % 3]), *above);
   }
   CoverPatch(position >= 0 ? rim_[position] : AddVertex(vertex_pair), position);
   return true;
 }
 
-// Joins the two corners that face a side instead of its ends. Where both are
-// the same vertex pair the two triangles are each other's reverse, and go.
+// Replaces a side by one between the two corners that face it. If both are the
+// same vertex pair, the two triangles are each other's reverse and are removed.
 bool DepthCertificate::TurnSide(int side, const Vec3& above) {
   const int t = side / 3, other = twin(side) / 3;
   const int apex = origin(Next(Next(side)));

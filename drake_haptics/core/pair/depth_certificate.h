@@ -12,8 +12,8 @@ namespace drake_haptics {
 
 /// A closed surface of triangles whose corners are vertex pairs (a_i, b_j), the
 /// points a_i − b_j of A ⊖ B. It moves with the bodies. It is a list of
-/// triangles glued edge to edge, not an embedded surface: it may fold, and all
-/// that is ever asked of it is how often it winds about the origin.
+/// triangles glued edge to edge, not an embedded surface: it may fold, and only
+/// its winding number about the origin matters.
 ///
 /// Side k of triangle t is the half-edge 3 t + k, from corner k to corner
 /// k + 1, counter-clockwise seen from outside.
@@ -23,11 +23,11 @@ class DepthCertificate {
   bool empty() const { return num_alive_ == 0; }
   int num_alive() const { return num_alive_; }
 
-  /// Takes the bodies' present pose; the points follow when they are read.
+  /// Sets the bodies' present pose; points are updated when they are read.
   void Move(const PosedPair& pair);
 
-  /// Starts with the tetrahedron of four vertex pairs, of which the last is
-  /// behind the triangle of the first three as seen from outside.
+  /// Starts with the tetrahedron of four vertex pairs; the last is behind the
+  /// triangle of the first three as seen from outside.
   void StartTetrahedron(const std::array<MinkowskiVertex, 4>& vertex_pairs);
 
   /// Triangles are numbered 0 … num_slots() − 1 with gaps; a gap has an
@@ -48,28 +48,29 @@ class DepthCertificate {
   }
 
   /// Replaces triangle t, and those around it that lie below `vertex_pair` or
-  /// behind what would come, by the cone from that vertex pair over their rim.
+  /// behind the new triangles, by the cone from that vertex pair over their
+  /// rim.
   ///
-  /// With each triangle replaced the surface changes by the tetrahedron between
-  /// it and the vertex pair. The winding number stays what it was where no
-  /// tetrahedron holds the origin: the triangle's plane parts them, or the
-  /// tetrahedron is on one side of the origin.
-  /// @param above the direction of t's nearest point, for that proof. Null to
-  ///     do without: then all triangles below the vertex pair are replaced, so
-  ///     that a hull stays a hull.
-  /// @returns false, having changed nothing, where t cannot be raised so.
+  /// Each replaced triangle changes the surface by the tetrahedron between the
+  /// triangle and the vertex pair. The winding number stays the same if no
+  /// tetrahedron contains the origin: the triangle's plane separates them, or
+  /// the tetrahedron is on one side of the origin.
+  /// @param above direction of t's nearest point, for this proof. If null,
+  ///     there is no proof, and all triangles below the vertex pair are
+  ///     replaced, so that a hull stays a hull.
+  /// @returns false, and changes nothing, if t cannot be raised this way.
   bool Raise(int t, const MinkowskiVertex& vertex_pair, const Vec3* above);
 
   /// Removes corner k of triangle t, if the hole can be closed by a cone from
   /// one of its neighbors whose triangles stay `clearance` (m) away from the
-  /// origin, and the winding number stays what it was.
+  /// origin, and the winding number stays the same.
   bool Simplify(int t, int k, double clearance);
 
-  /// The triangles that the last change made.
+  /// Triangles that the last change added.
   std::span<const int> added() const { return added_; }
 
-  /// How often the surface winds about the origin: the crossings of a ray from
-  /// there, counted by direction. Zero also where the ray meets an edge.
+  /// Winding number of the surface about the origin: the crossings of a ray
+  /// from the origin, counted by direction. Also zero if the ray meets an edge.
   int WindingNumber(const Vec3& ray);
 
  private:
@@ -80,8 +81,8 @@ class DepthCertificate {
   struct Vertex {
     Vec3 point;
     MinkowskiVertex vertex_pair;
-    unsigned move = 0;    // of which `point` is
-    int num_corners = 0;  // triangles that have it
+    unsigned move = 0;    // move for which `point` is valid
+    int num_corners = 0;  // number of triangles with this corner
   };
 
   static int Next(int half_edge) {
@@ -129,7 +130,7 @@ class DepthCertificate {
   const Vec3* vertices_A_ = nullptr;
   const Vec3* vertices_B_ = nullptr;
   Pose X_AB_;
-  double flat_ = 0;  // height, m, that does not count
+  double flat_ = 0;  // height that is round-off, m
   unsigned move_ = 0;
 
   // The change in progress.

@@ -8,7 +8,7 @@ namespace drake_haptics {
 namespace {
 
 constexpr int kMaxGrowth = 1024;
-// Heights that are round-off, as a share of the size.
+// Height that is round-off, as a share of the size.
 constexpr double kThinShare = 1e-13;
 
 // Vertex number k of three that span the feature.
@@ -55,12 +55,12 @@ class Growth {
     std::array<MinkowskiVertex, 4> vertex_pairs;
     std::array<Vec3, 3> p;
     for (int k = 0; k < 3; ++k) {
-      // Two edges span a parallelogram: three of its corners.
+      // Two edges span a parallelogram: take three of its corners.
       vertex_pairs[k] = {AffineBasisVertex(pair_.A, facet.feature_A, k, 1),
                          AffineBasisVertex(pair_.B, facet.feature_B, k, 2)};
       p[k] = pair_.a(vertex_pairs[k].a) - pair_.b(vertex_pairs[k].b);
     }
-    // The outward normal of A ⊖ B is against n.
+    // The outward normal of A ⊖ B is opposite to n.
     if ((p[1] - p[0]).cross(p[2] - p[0]).dot(facet.n) > 0) {
       std::swap(vertex_pairs[1], vertex_pairs[2]);
     }

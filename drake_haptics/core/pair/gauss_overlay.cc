@@ -12,9 +12,9 @@ namespace {
 
 using Fan = std::span<const Polytope::OneRingEntry>;
 
-// The overlay at one vertex pair. Where an answer is known, its gap is the
-// floor, and what lies below is passed over. Along an arc the gap is largest at
-// an end where it is negative.
+// The overlay at one vertex pair. The gap of a known answer is the floor:
+// candidates below it are skipped. A negative gap along an arc is largest at an
+// end.
 class Overlay {
  public:
   Overlay(const PosedPair& pair, const MinkowskiVertex& vertex_pair,
@@ -30,8 +30,7 @@ class Overlay {
         w_B_(pair.X_AB.R.transpose() * w_) {}
 
   void Run() {
-    // While a good answer is known most vertex pairs have nothing above its
-    // gap.
+    // Once a good answer is known, most vertex pairs have no larger gap.
     if (floor_ < 0 && !OverlayMayExceed(pair_, vertex_pair_, w_, floor_))
       return;
     FillGaps(fan_A_, -w_, &workspace_.gaps_A);
@@ -42,8 +41,8 @@ class Overlay {
   }
 
  private:
-  // The gap along each facet's normal. Segments have no facets, and all is
-  // open.
+  // Fills in the gap along each facet's normal; infinite on a segment, which
+  // has no facets.
   static void FillGaps(Fan fan, const Vec3& w, std::vector<double>* gaps) {
     gaps->resize(fan.size());
     for (std::size_t k = 0; k < fan.size(); ++k) {
@@ -141,13 +140,13 @@ class Overlay {
            (left >= -slack && right <= slack);
   }
 
-  // n is in the region of A's vertex when no neighbor lies further against n.
+  // n is in the region of A's vertex when no neighbor lies farther along −n.
   bool IsInRegionOfA(const Vec3& n) const {
     return IsFarthest(pair_.A, vertex_pair_.a, -n,
                       kRegionSlack * pair_.A.radius);
   }
 
-  // n is in the region of B's vertex when no neighbor lies further along n.
+  // n is in the region of B's vertex when no neighbor lies farther along n.
   bool IsInRegionOfB(const Vec3& n) const {
     return IsFarthest(pair_.B, vertex_pair_.b, pair_.X_AB.R.transpose() * n,
                       kRegionSlack * pair_.B.radius);

@@ -36,9 +36,9 @@ int FindExceeding(const Region& region, const Vec3& w, double floor) {
   return -1;
 }
 
-// The part of a region within the half-space direction · edge <= 0. A clip adds
-// a corner, and more where round-off has bent the region: false if there are
-// then too many.
+// Clips a region to the half-space direction · edge <= 0. A clip adds a corner,
+// or more if round-off has bent the region. Returns false if there are too
+// many.
 bool Clip(const Vec3& edge, Region* clipped) {
   const Region region = *clipped;
   Region& out = *clipped;
@@ -63,7 +63,8 @@ bool Clip(const Vec3& edge, Region* clipped) {
   return true;
 }
 
-// The edge of B that excludes a direction (in B's frame) most; null if none.
+// The edge of B that excludes a direction (in B's frame) most; null if none
+// does.
 const Polytope::OneRingEntry* FindExcluding(
     std::span<const Polytope::OneRingEntry> fan_B, const Vec3& n_B) {
   const Polytope::OneRingEntry* found = nullptr;

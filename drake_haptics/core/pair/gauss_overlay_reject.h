@@ -11,10 +11,11 @@ namespace drake_haptics {
 ///
 /// A's region is the cone of the normals around its vertex. A direction in a
 /// cone is a combination of the cone's corners with weights that sum to one or
-/// more, so where no corner exceeds a negative floor, nothing in it does.
-/// Corners that do exceed it are clipped off along the edges of B that exclude
-/// them, until none is left or one turns out to lie in B's region too. That
-/// takes one or two clips where the whole overlay takes all pairs of edges.
+/// more, so if no corner exceeds a negative floor, no direction in the cone
+/// does. Corners that exceed it are clipped off along the edges of B that
+/// exclude them, until none is left or one is found to lie in B's region too.
+/// This takes one or two clips, whereas the whole overlay takes all pairs of
+/// edges.
 /// @param w the vertex pair's vertex of A ⊖ B, in A's frame, m.
 [[nodiscard]] bool OverlayMayExceed(const PosedPair& pair,
                                     const MinkowskiVertex& vertex_pair,

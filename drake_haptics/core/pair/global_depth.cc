@@ -13,27 +13,27 @@ namespace {
 
 // Distances closer than this share of the size are equal.
 constexpr double kEqualShare = 1e-13;
-// How far below a facet's plane its triangles may lie, as a share of the size:
-// a hull merges facets that are coplanar to about as much.
+// Depth below a facet's plane at which its triangles may lie, as a share of the
+// size: a hull merges facets that are coplanar to about this share.
 constexpr double kCoplanarShare = 1e-11;
-// The last facet gives the normal while it is within this share of the size of
-// the shallowest one.
+// The last facet gives the normal while its depth is this close to the least
+// one, as a share of the size.
 constexpr double kKeepShare = 1e-9;
-// Raises of a surface just grown. One that was kept may need a share of its
-// triangles raised; more, and growing it again is cheaper.
+// Bounds on the raises of a new and of a kept surface. Growing a kept surface
+// anew is cheaper than raising more than a share of its triangles.
 constexpr int kMaxRaises = 4096;
 constexpr int kKeptRaises = 48;
 constexpr int kKeptTrianglesPerRaise = 4;
-// A surface larger than this is simplified, after raises only and by few tries,
-// to spread the cost.
+// A surface with more triangles is simplified, only after raises and in few
+// tries, to spread the cost.
 constexpr int kSimpleTriangles = 64;
 constexpr int kSimplifyTries = 3;
-// How far away, in depths, what simplifying makes must be: nearer, it would
-// soon be raised again.
+// Least distance, in depths, of the triangles that simplifying adds: nearer
+// ones would soon be raised again.
 constexpr double kSimplifyClearance = 1.05;
 
-// A bound on how far any point of A ⊖ B moves from one pose to the other, as
-// seen from the larger body.
+// Bound on the displacement of any point of A ⊖ B from one pose to the other,
+// m, seen from the larger body.
 double MotionBound(const PosedPair& pair, const Pose& last) {
   const Pose& now = pair.X_AB;
   const double turn = (now.R - last.R).norm() / std::sqrt(2.0);
@@ -72,7 +72,7 @@ class Search {
  private:
   double depth() const { return -best_.facet.h; }
 
-  // The last answer again, or what the walk from it leads to.
+  // Evaluates the last answer again, or walks from it.
   void RevisitLast() {
     const GlobalDepth& last = state_.last;
     if (last.facet.feature_A.is_none()) return;
@@ -141,8 +141,8 @@ class Search {
     return RaiseAll(kMaxRaises);
   }
 
-  // Turns the odometer on and measures the triangles that may be nearer than
-  // the best facet now. False if the origin has left the surface.
+  // Advances the odometer and measures the triangles that may now be nearer
+  // than the best facet. Returns false if the origin has left the surface.
   bool MeasureNear() {
     state_.travel += MotionBound(pair_, state_.X_AB);
     if (state_.travel > pair_.scale()) {
@@ -163,7 +163,7 @@ class Search {
   }
 
   // Measures a triangle and queues it if it is nearer than the best facet.
-  // False if it passes through the origin.
+  // Returns false if it passes through the origin.
   bool Measure(int t) {
     const double s = IsOnFacet(t) ? depth() : surface_.Nearest(t).distance;
     if (!(s > 0)) return false;
@@ -173,7 +173,7 @@ class Search {
   }
 
   // Whether a triangle lies in the plane of the best facet: then it is as far
-  // away as that, however thin it is.
+  // away as the facet, however thin it is.
   bool IsOnFacet(int t) {
     const double limit = best_.facet.h + tie_;
     const Vec3& n = best_.facet.n;
@@ -194,12 +194,12 @@ class Search {
     return nearest;
   }
 
-  // Raises the surface where it is nearer than the best facet, nearest first,
-  // until it is nowhere.
+  // Raises the triangles that are nearer than the best facet, nearest first,
+  // until there are none.
   bool RaiseAll(int max_raises) {
     for (num_raises_ = 0; !state_.near.empty();) {
       const auto [key, t] = PopNearest();
-      // Entries of triangles that are gone stay behind in the heap.
+      // The heap still has entries of triangles that are gone.
       if (!surface_.is_alive(t) || surface_.keys()[t] != key) continue;
       const double s = key - state_.travel;
       if (!(s < depth() - tie_)) return true;
@@ -275,7 +275,7 @@ class Search {
   DepthCertificate& surface_;
   const double tie_;
   GlobalDepth best_;  // the shallowest facet known
-  GlobalDepth last_;  // the last answer, if it still is a facet
+  GlobalDepth last_;  // the last answer, if it is still a facet
   int num_raises_ = 0;
 };
 

@@ -29,18 +29,18 @@ struct NearTriangle {
   bool operator<(const NearTriangle& other) const { return key > other.key; }
 };
 
-/// What a pair keeps between queries of its global depth. It belongs to the two
+/// State of a pair between queries of its global depth. It belongs to the two
 /// polytopes that it was first used with.
 struct GlobalDepthState {
   DepthCertificate surface;
-  Pose X_AB;                       ///< at the last query
-  double travel = 0;               ///< odometer, m
-  GlobalDepth last;                ///< features none if there is no last answer
-  int cursor = 0;                  ///< triangle last tried for simplifying
+  Pose X_AB;          ///< pose at the last query
+  double travel = 0;  ///< odometer, m
+  GlobalDepth last;   ///< features are none if there is no last answer
+  int cursor = 0;     ///< triangle last tried for simplifying
   std::vector<NearTriangle> near;  ///< heap, nearest first
   DepthWorkspace walk;
 
-  /// Forgets the last answer and what proved it.
+  /// Forgets the last answer and its proof.
   void Reset();
 };
 
@@ -48,27 +48,28 @@ struct GlobalDepthState {
 /// distance of the origin to the boundary of C = A ⊖ B.
 ///
 /// The answer is proven by a closed surface S of triangles between points of C
-/// that winds once about the origin (inner_surface.h). C is convex, so S is in
-/// it. Were all of S at a distance of d or more, a point nearer than d would be
-/// wound about as the origin is, whereas S does not wind about a point outside
-/// C: the ball of radius d is in C, and the depth is at least d. A facet of C
-/// whose plane is at the distance d makes it d. S need not be convex for that,
-/// and away from the facet it may be coarse.
+/// that winds once about the origin (depth_certificate.h). C is convex, so S is
+/// in C. If all of S is at a distance of d or more, S winds about each point
+/// nearer than d as often as about the origin. But S does not wind about points
+/// outside C: so the ball of radius d is in C, and the depth is at least d. A
+/// facet of C whose plane is at the distance d makes the depth equal to d. S
+/// need not be convex for this, and may be coarse away from the facet.
 ///
 /// S is kept from query to query. If no point of C has moved by more than m
-/// since a triangle was measured at the distance s, the triangle is still s − m
-/// away. Its key is s plus the odometer's reading, the sum of the m of all
-/// queries, and only triangles whose key less the reading is below d are looked
-/// at. The origin can have left S only through a triangle whose bound has
+/// since a triangle was measured at the distance s, the triangle is still at
+/// least s − m away. Its key is s plus the odometer, the sum of m over all
+/// queries, and only triangles whose key less the odometer is below d are
+/// measured. The origin can have left S only through a triangle whose bound has
 /// fallen to zero; then the crossings of a ray are counted.
 ///
 /// Where S is nearer than the best facet known, the support along that
-/// direction raises it, or shows the way to a shallower facet (the expansion of
-/// van den Bergen, 2001, on a surface that need not stay convex). S is grown
-/// again where that fails, for which the number of raises is bounded.
+/// direction raises S or leads to a shallower facet (the expansion of van den
+/// Bergen, 2001, on a surface that need not stay convex). The number of raises
+/// is bounded; if they fail, S is grown anew.
 ///
-/// A facet within a billionth of the size of the shallowest one stays the
-/// answer while it is one, so that ties do not chatter; h is the true one.
+/// The last facet stays the answer while it is a facet and its depth is within
+/// a billionth of the size of the least one, so that ties do not chatter; h is
+/// that of the shallowest facet.
 /// @param local a local minimum, an upper bound of the depth (WalkDepth).
 [[nodiscard]] GlobalDepth FindGlobalDepth(const PosedPair& pair,
                                           const Depth& local,

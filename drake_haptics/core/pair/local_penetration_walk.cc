@@ -27,8 +27,8 @@ class Walk {
     Visit(start);
     Depth result;
     result.vertex_pair = start;
-    // Each round looks around one facet: the best supported one, or while
-    // there is none, the best of the others not yet looked around.
+    // Each round visits the vertex pairs of one facet: the best supported one
+    // or, while there is none, the best of the others not yet visited.
     for (int num_steps = 0;;) {
       const int target = best_ >= 0 ? best_ : BestOpen();
       if (target < 0) break;
@@ -63,7 +63,7 @@ class Walk {
   void Visit(const MinkowskiVertex& vertex_pair) {
     workspace_.visited.push_back(vertex_pair);
     const std::size_t first = workspace_.candidates.size();
-    // With a supported answer at hand only better ones are of interest.
+    // Once a supported answer is known, only better ones count.
     const double floor =
         best_ >= 0 ? workspace_.candidates[best_].h + Tie(pair_) : kNone;
     OverlayGaussRegions(pair_, vertex_pair, rule_, floor, &workspace_);
@@ -75,7 +75,7 @@ class Walk {
     Take(workspace_.candidates.size() - 1);
   }
 
-  // Notes what the candidates from the given one on mean for the answer.
+  // Updates the best candidate with the candidates from `first` on.
   void Take(std::size_t first) {
     workspace_.closed.resize(workspace_.candidates.size(), 0);
     const double tie = Tie(pair_);
@@ -88,8 +88,8 @@ class Walk {
     }
   }
 
-  // Looks at all vertex pairs of a facet; false where the bound on those
-  // without an answer stopped it.
+  // Visits all vertex pairs of a facet; returns false if the bound on vertex
+  // pairs without an answer stops it.
   bool VisitVertexPairsOf(int target, MinkowskiVertex* last) {
     const DepthCandidate facet = workspace_.candidates[target];
     ListMinkowskiFacetVertices(pair_, facet.feature_A, facet.feature_B, facet.n,

@@ -8,12 +8,12 @@
 
 namespace drake_haptics {
 
-/// Bounds on what a walk looks at, at least 1 each.
+/// Bounds on a walk, at least 1 each.
 struct WalkBounds {
-  /// Vertex pairs, while no supported facet is known.
+  /// Vertex pairs visited while no supported facet is known.
   int max_promotion_vertex_pairs = 1;
-  /// Steps from then on (the iterations of paper 5.2.3): each looks at all
-  /// vertex pairs of the best facet so far. Far above most needs.
+  /// Steps from then on (the iterations of paper 5.2.3): each visits all vertex
+  /// pairs of the best facet so far. Few walks need nearly as many.
   int max_steps = 1024;
 };
 
@@ -24,14 +24,14 @@ enum class SurfaceRule {
                    ///< carried by the meshes that they stand for
 };
 
-/// A facet of the Minkowski difference A ⊖ B that is near a vertex pair: the
-/// contact which separating the pair along n would leave.
+/// A facet of the Minkowski difference A ⊖ B near a vertex pair: the contact
+/// that remains after the pair is separated along n.
 struct DepthCandidate {
   double h = 0;            ///< support gap along n, m; −h is the depth
   Vec3 n = Vec3::UnitX();  ///< unit, from B into A, in A's frame
   Feature feature_A;       ///< facet, vertex or edge of A
   Feature feature_B;       ///< vertex, facet or edge of B
-  /// Of the surfaces; under kWholeBoundary always kSupported.
+  /// Support by the surfaces; always kSupported under kWholeBoundary.
   NormalConeSupport support = NormalConeSupport::kVirtual;
 };
 
@@ -40,7 +40,7 @@ enum class DepthStatus {
   kLocalMinimum,  ///< no facet around any of the answer's vertex pairs is
                   ///< shallower
   kBounded,       ///< a bound was met; the best one seen
-  kNoFacet        ///< the Minkowski difference has no facet here (flat in it)
+  kNoFacet        ///< the Minkowski difference has no facet here (it is flat)
 };
 
 struct Depth {
@@ -67,18 +67,18 @@ struct DepthWorkspace {
 /// and triple products instead of the paper's projection to z = 1, which
 /// degenerates for flat hulls; the corners of the overlay are the VF, FV and EE
 /// facets around the vertex pair. The walk moves to the shallowest facet that
-/// both surfaces carry, until no vertex pair of that facet knows a better one.
+/// both surfaces carry, until no vertex pair of that facet has a better one.
 ///
-/// Facets on virtual features are passed over: where none of the facets seen
-/// so far is carried by both surfaces, the walk goes on over the next best
-/// ones (the promotion of paper 5.3.2) up to the bound.
-/// @param start a vertex pair whose Gauss regions overlap: supports along a
-/// direction.
-/// @param known a facet of that vertex pair known beforehand, or null:
-/// supported, it
-///     spares the look at all that is deeper.
-/// A facet's gap never exceeds that of the shallowest one, so where a bound
-/// ends the walk, the best facet seen still bounds the depth from above.
+/// Facets on virtual features are skipped: while none of the facets seen so far
+/// is carried by both surfaces, the walk continues over the next best ones (the
+/// promotion of paper 5.3.2) up to the bound.
+///
+/// A facet's gap never exceeds that of the shallowest one, so if a bound ends
+/// the walk, the best facet seen still bounds the depth from above.
+/// @param start a vertex pair whose Gauss regions overlap: support vertices
+///     along a direction.
+/// @param known a known facet of that vertex pair, or null. If it is supported,
+///     deeper facets are skipped.
 [[nodiscard]] Depth WalkDepth(const PosedPair& pair,
                               const MinkowskiVertex& start, SurfaceRule rule,
                               const DepthCandidate* known,

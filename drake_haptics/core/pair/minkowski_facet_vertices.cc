@@ -9,7 +9,7 @@ namespace drake_haptics {
 namespace {
 
 bool IsFlush(const Polytope& P, int facet, const Vec3& outward) {
-  // Far from parallel, as facets mostly are, one product tells.
+  // Most facets are far from parallel, and one product excludes them.
   constexpr double kNearlyParallel = 1 - 1e-8;
   if (facet < 0 || outward.dot(P.facets[facet].normal) < kNearlyParallel) {
     return false;
@@ -37,7 +37,7 @@ Feature WidestAtVertex(const Polytope& P, Feature feature,
   return flush == nullptr ? feature : Feature(FeatureKind::kEdge, flush->edge);
 }
 
-// The vertices of a feature; those of a facet counter-clockwise from outside.
+// The vertices of a feature; for a facet, counter-clockwise from outside.
 struct Corners {
   int storage[2];
   std::span<const int> vertices;
@@ -61,9 +61,9 @@ struct Corners {
   Corners& operator=(const Corners&) = delete;
 };
 
-// The difference of two flush polygons, by merging their sides in the order of
-// their directions. Seen from outside A both are walked counter-clockwise:
-// that is backwards for B, whose outside is opposite.
+// The difference of two flush polygons, whose sides are merged in the order of
+// their directions. Seen from outside A, both are traversed counter-clockwise,
+// which is backwards for B, whose outside is opposite.
 class PolygonDifference {
  public:
   PolygonDifference(const PosedPair& pair, std::span<const int> loop_A,

@@ -18,7 +18,7 @@ enum class ContactStatus : std::int32_t {
 /// One contact of a pair of polytopes, in A's frame. Signs are those of
 /// Drake's SignedDistancePair.
 struct PairContact {
-  double distance = 0;      ///< m; negative is the penetration depth
+  double distance = 0;      ///< m; if negative, minus the penetration depth
   Vec3 n = Vec3::UnitX();   ///< unit, from B into A
   Vec3 p_a = Vec3::Zero();  ///< witness point of A, m
   Vec3 p_b = Vec3::Zero();  ///< witness point of B: p_a − p_b = distance · n
@@ -26,8 +26,8 @@ struct PairContact {
   Feature feature_B;
   ContactStatus status = ContactStatus::kNear;
   double extent = 0;     ///< measure of the overlap, m² (contact_patch.h)
-  double flushness = 0;  ///< share of it in flush faces and edges
-  /// Vertices of A and B that support the pair along n.
+  double flushness = 0;  ///< share of the contact in flush faces and edges
+  /// Support vertices of A and B along n.
   std::array<std::int32_t, 2> support{};
 };
 

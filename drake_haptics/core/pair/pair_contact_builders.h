@@ -7,10 +7,10 @@
 
 namespace drake_haptics {
 
-/// Whether a pair is apart by so little that distance and depth are both
-/// wanted, the larger of their support gaps being the answer: closer than a
-/// billionth of the size, or than a millionth where round-off leaves the
-/// distance unproven.
+/// Whether a pair is so little apart that distance and depth are both needed,
+/// and the one with the larger support gap is the answer: closer than a
+/// billionth of the size, or than a millionth if round-off leaves the distance
+/// unproven.
 [[nodiscard]] bool AreBothWanted(const PosedPair& pair,
                                  const Separation& separation);
 
@@ -19,7 +19,8 @@ struct ClosestFeatures {
   Feature feature_A;
   Feature feature_B;
 
-  /// Whether their difference is a facet of A ⊖ B, and not a part of one's rim.
+  /// Whether their difference is a facet of A ⊖ B, and not a part of a facet's
+  /// rim.
   bool SpanFacet() const {
     const auto is = [this](FeatureKind a, FeatureKind b) {
       return feature_A.kind() == a && feature_B.kind() == b;
@@ -30,7 +31,7 @@ struct ClosestFeatures {
   }
 };
 
-/// The features that hold a simplex's vertices.
+/// The features that contain a simplex's vertices.
 /// @param n from B into A, in A's frame, unit.
 ClosestFeatures FeaturesOfSimplex(const PosedPair& pair,
                                   const SimplexVertexPairs& simplex,
@@ -43,16 +44,16 @@ PairContact ContactApart(const PosedPair& pair, const Separation& separation);
 PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
                            ContactStatus status);
 
-/// The contact of two sets that touch and lie in one line or point: they
-/// overlap by nothing across it. The normal stays near n_last (zero if none).
+/// The contact of two touching sets that lie in one line or point, and do not
+/// overlap across it. The normal stays near n_last (zero if none).
 PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
                            const Vec3& n_last);
 
-/// Unit direction from B's centroid to A's; any where they coincide.
+/// Unit direction from B's centroid to A's; any if they coincide.
 Vec3 BetweenCentroids(const PosedPair& pair);
 
-/// The facet found by the starts of paper 5.2.2 where no facet is known: the
-/// line that joins the centroids and, unless it is zero, the last normal.
+/// Finds a facet if none is known, from the starts of paper 5.2.2: the line
+/// that joins the centroids and, unless it is zero, the last normal.
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
                 const MinkowskiVertex& vertex_pair_last,
                 const WalkBounds& bounds, DepthWorkspace* workspace);

@@ -8,11 +8,11 @@
 
 namespace drake_haptics {
 
-/// What a pair remembers from one tick to the next.
+/// State of a pair from one tick to the next.
 struct PairState {
-  SimplexVertexPairs simplex;   ///< of the last separation query
+  SimplexVertexPairs simplex;   ///< simplex of the last separation query
   Vec3 n = Vec3::Zero();        ///< last normal, in A's frame; zero if none
-  MinkowskiVertex vertex_pair;  ///< supports along the last normal
+  MinkowskiVertex vertex_pair;  ///< support vertices along the last normal
   Feature feature_A;  ///< features of the last depth; none if the last
   Feature feature_B;  ///< answer was not a depth
 };

@@ -20,14 +20,14 @@ void ClipPolygon(const Value& value, PatchWorkspace* workspace) {
   ClipPolygon(value, &workspace->polygon, &workspace->clipped);
 }
 
-/// What presses on a feature: the center of the pressure and its integral.
+/// Load on a feature: the center of the pressure and its integral.
 struct Load {
   Vec3 center;
   double integral = 0;  ///< over the area, m³, or over the length, m²
 };
 
-/// Of the linear pressure (z of the corners) over a polygon or a segment;
-/// nothing where nothing presses.
+/// Load of the linear pressure (z of the corners) over a polygon or a segment;
+/// none if there is no pressure.
 std::optional<Load> PressureLoad(const std::vector<Vec3>& corners);
 
 }  // namespace drake_haptics

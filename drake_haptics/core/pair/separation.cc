@@ -13,8 +13,8 @@ namespace {
 constexpr double kRelativeGap = 4e-16;
 // The gap, relative to the same size, up to which an answer counts as proven.
 constexpr double kProvenShare = 1e-10;
-// Below this share of the size the difference of the closest points carries
-// no direction any more.
+// Below this share of the size the difference of the closest points has no
+// reliable direction.
 constexpr double kTouchingShare = 1e-13;
 
 void Start(const PosedPair& pair, const SimplexVertexPairs& start,
@@ -29,9 +29,9 @@ void Start(const PosedPair& pair, const SimplexVertexPairs& start,
   ReduceToClosest(simplex);
 }
 
-// The direction of the closest point: the normal of the features where three
-// vertices define it, which is exact to round-off however small the distance,
-// and perpendicular to the segment of two.
+// The direction of the closest point. For three vertices it is the normal of
+// their triangle, exact to round-off however small the distance; for two it is
+// perpendicular to their segment.
 Vec3 Direction(const Simplex& simplex, const Vec3& closest, double length) {
   if (simplex.size == 3) return simplex.normal.normalized();
   if (simplex.size == 1) return closest / length;
@@ -41,7 +41,7 @@ Vec3 Direction(const Simplex& simplex, const Vec3& closest, double length) {
 }
 
 // Where round-off tilts the direction, a facet beside the closest features may
-// carry a better one: nearly parallel faces leave a sliver between them.
+// have a better normal: nearly parallel faces leave a sliver between them.
 void Straighten(const PosedPair& pair, double scale, Separation* result) {
   constexpr double kNearby = 0.999;  // cosine
   const Vec3 v = result->simplex.Closest();
@@ -106,7 +106,7 @@ Separation Search(const PosedPair& pair, const SimplexVertexPairs& start,
     Simplex next = simplex;
     next.Add(vertex_pair, pair.a(vertex_pair.a) - pair.b(vertex_pair.b));
     ReduceToClosest(&next);
-    // Round-off can stop the descent a hair short of the gap above.
+    // Round-off can stop the descent just short of kRelativeGap.
     if (next.size < 4 && !(next.Closest().squaredNorm() < length * length)) {
       break;
     }
@@ -131,8 +131,8 @@ bool HoldsOrigin(const PosedPair& pair, const SimplexVertexPairs& simplex) {
     p[i] =
         pair.a(simplex.vertex_pairs[i].a) - pair.b(simplex.vertex_pairs[i].b);
   }
-  // Volumes, with signs, of the tetrahedra that the origin makes with the
-  // faces: the origin is inside where all are alike.
+  // Signed volumes of the tetrahedra that the origin makes with the faces: the
+  // origin is inside if all signs are equal.
   const Vec3 u = p[2].cross(p[3]), v = p[0].cross(p[1]);
   const double volumes[4] = {p[1].dot(u), -p[0].dot(u), p[3].dot(v),
                              -p[2].dot(v)};

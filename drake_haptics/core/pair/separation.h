@@ -6,7 +6,7 @@
 
 namespace drake_haptics {
 
-/// Far more than polytopes have been seen to need.
+/// Far more rounds than polytopes were seen to need.
 inline constexpr int kMaxSeparationRounds = 128;
 
 /// How a separation query ended.
@@ -23,17 +23,18 @@ struct Separation {
   Vec3 n = Vec3::UnitX();   ///< unit, from B into A; unset where kTouching
   Vec3 p_a = Vec3::Zero();  ///< closest point of A, m; unset where kBeyond
   Vec3 p_b = Vec3::Zero();  ///< closest point of B, m; unset where kBeyond
-  /// Where kApart: whether the supports along n prove the distance. Round-off
-  /// can end the search before.
+  /// If kApart: whether the supports along n prove the distance. Round-off can
+  /// end the search earlier.
   bool is_proven = false;
-  /// The search met the bound on its rounds before it was proven: the distance
+  /// Whether the search met its bound on rounds before the proof: the distance
   /// may be too large, never too small.
   bool is_bounded = false;
-  Simplex simplex;  ///< the features; also the next query's start
+  Simplex simplex;  ///< closest features; also the next query's start
 };
 
-/// Whether four vertices of A ⊖ B still hold the origin between them, strictly
-/// and beyond round-off: then the pair overlaps. False for fewer vertices.
+/// Whether the tetrahedron of four vertices of A ⊖ B still contains the origin,
+/// strictly and beyond round-off: then the pair overlaps. False for fewer
+/// vertices.
 [[nodiscard]] bool HoldsOrigin(const PosedPair& pair,
                                const SimplexVertexPairs& simplex);
 
@@ -42,8 +43,8 @@ struct Separation {
 /// vertices of `start` (may be empty), evaluated at the present pose. Ends on
 /// the duality gap |v| − h(n), on a repeated vertex, or after a bounded number
 /// of rounds with the best answer so far. A warm search that ends unproven is
-/// made again from nothing.
-/// @param limit distance (m) beyond which the exact answer is not wanted.
+/// repeated from an empty start.
+/// @param limit distance (m) beyond which the exact answer is not needed.
 [[nodiscard]] Separation ComputeSeparation(
     const PosedPair& pair, const SimplexVertexPairs& start, double limit,
     int max_rounds = kMaxSeparationRounds);

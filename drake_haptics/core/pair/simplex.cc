@@ -10,18 +10,18 @@
 namespace drake_haptics {
 namespace {
 
-// Twice the area of a triangle over the square of its distance from the origin,
-// and height of a tetrahedron over that distance, below which the shape is
-// round-off.
+// Bounds below which a shape is round-off: twice the area of a triangle over
+// its squared distance from the origin, and the height of a tetrahedron over
+// its distance. Distances are those of the farthest corner.
 constexpr double kSliver = 1e-14;
 constexpr double kFlat = 1e-15;
 
-// A face of a simplex and the point of it that is closest to the origin.
+// A face of a simplex and its point that is closest to the origin.
 struct Face {
   int count = 0;
   std::array<int, 4> corner;
   std::array<double, 4> weight;
-  Vec3 normal;  // of a triangle
+  Vec3 normal;  // set for a triangle
 
   Face() = default;
   Face(std::initializer_list<int> corners,
@@ -58,8 +58,8 @@ Face ClosestOnTriangle(const Simplex& s, int i, int j, int k) {
   const Vec3 normal = (q - p).cross(r - p);
   const double size_squared =
       std::max({p.squaredNorm(), q.squaredNorm(), r.squaredNorm()});
-  // In a sliver the shares below are noise; its sides hold the closest point
-  // as well.
+  // In a sliver the weights below are noise; its sides contain the closest
+  // point as well.
   if (normal.squaredNorm() > kSliver * kSliver * size_squared * size_squared) {
     // Areas of the three triangles that the foot of the origin makes with the
     // sides; all positive means that the foot is inside.

@@ -7,8 +7,8 @@
 
 namespace drake_haptics {
 
-/// Up to four vertices of the Minkowski difference A ⊖ B by name: what is left
-/// of a simplex when the pose changes.
+/// Up to four vertices of the Minkowski difference A ⊖ B as vertex pairs: the
+/// part of a simplex that stays valid when the pose changes.
 struct SimplexVertexPairs {
   std::array<MinkowskiVertex, 4> vertex_pairs;
   int size = 0;
@@ -20,7 +20,7 @@ struct SimplexVertexPairs {
 struct Simplex : SimplexVertexPairs {
   std::array<Vec3, 4> points;       ///< a − b, m, in A's frame
   std::array<double, 4> weights{};  ///< barycentric, of the closest point
-  Vec3 normal = Vec3::Zero();       ///< of a triangle, away from the origin, m²
+  Vec3 normal = Vec3::Zero();  ///< for a triangle: away from the origin, m²
 
   bool Contains(const MinkowskiVertex& vertex_pair) const {
     for (int i = 0; i < size; ++i) {
@@ -41,8 +41,8 @@ struct Simplex : SimplexVertexPairs {
   }
 };
 
-/// Shrinks `simplex` to the smallest face that holds its closest point to the
-/// origin and sets the weights. A result of size four holds the origin.
+/// Shrinks `simplex` to the smallest face that contains its closest point to
+/// the origin and sets the weights. A result of size four contains the origin.
 void ReduceToClosest(Simplex* simplex);
 
 }  // namespace drake_haptics

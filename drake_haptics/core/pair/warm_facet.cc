@@ -13,8 +13,8 @@
 namespace drake_haptics {
 namespace {
 
-// How far the neighbors of vertex v of P reach beyond it along a direction, m;
-// across a facet, beyond what it is not flat.
+// Reach, m, of the neighbors of vertex v of P beyond it along a direction; for
+// neighbors across a facet, less its unevenness.
 double Reach(const Polytope& P, int v, const Vec3& direction) {
   double reach = -std::numeric_limits<double>::infinity();
   for (const Polytope::OneRingEntry& ring_entry : P.fan_of(v)) {
@@ -56,8 +56,8 @@ struct FacetVisit {
   double h = 0;
 };
 
-// A facet of P against vertex v of Q, which is `point_P` in P's frame;
-// `outward_Q` is the facet's normal in Q's frame.
+// Evaluates a facet of P against vertex v of Q, which is `point_P` in P's
+// frame; `outward_Q` is the facet's normal in Q's frame.
 FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
                  const Vec3& point_P, const Vec3& outward_Q) {
   FacetVisit result;
@@ -69,7 +69,7 @@ FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
   result.h = plane.normal.dot(point_P) - plane.offset;
   const double depth = -result.h;
   const double clearance = Clearance(P, facet, point_P);
-  // Where Q lies flush, facets around its other vertices touch this one too.
+  // If Q lies flush, facets around its other vertices touch this one too.
   const bool is_flush = reach >= -kFlushSlack * Q.radius;
   result.is_minimum =
       clearance > 0 &&
@@ -145,7 +145,7 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
   FacetVisit visit;
   visit.is_facet = true;
   visit.h = h;
-  // Where one body lies flush only the other one bounds the turn.
+  // If one body lies flush, only the other one bounds the turn.
   const auto proves = [&](const Polytope& P, Feature edge,
                           const Vec3& outward) {
     return clearance > -h * P.edges[edge.index()].turn &&

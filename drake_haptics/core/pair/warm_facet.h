@@ -6,7 +6,7 @@
 
 namespace drake_haptics {
 
-/// What became of the facet of A ⊖ B that was the last answer.
+/// Status of the last answer's facet of A ⊖ B at the present pose.
 enum class RevisitStatus {
   kGone,    ///< its features do not face each other any more
   kFacet,   ///< it is a facet, perhaps not the shallowest around
@@ -23,11 +23,11 @@ struct Revisit {
 /// where it can, that it is still a local minimum of the depth.
 ///
 /// The proof: let the origin lie |h| below the facet's plane with its foot
-/// inside the facet, at least c from its rim. A facet that touches it has its
-/// plane's line in this one on or outside the rim, so at an angle φ its depth
-/// is at least |h| cos φ + c sin φ, which exceeds |h| when c > |h| tan(φ/2).
-/// The largest φ is bounded by the Gauss regions of either body's feature
-/// (gauss_turn.h).
+/// inside the facet, at least c from its rim. The plane of a facet that touches
+/// this one meets this plane in a line on or outside the rim, so at an angle φ
+/// the depth of that facet is at least |h| cos φ + c sin φ, which exceeds |h|
+/// when c > |h| tan(φ/2). The largest φ is bounded by the Gauss regions of
+/// either body's feature (gauss_angle_bound.h).
 /// @param n_last the facet's last normal, in A's frame; decides the side on
 ///     which two edges pass each other.
 [[nodiscard]] Revisit RevisitFacet(const PosedPair& pair, SurfaceRule rule,

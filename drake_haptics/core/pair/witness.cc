@@ -38,8 +38,8 @@ Vec3 NearestOn(const Segment& s, const Vec3& point) {
   return s.p + std::clamp((point - s.p).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
 }
 
-// How far a point lies beyond a segment's ends, less what is allowed beyond an
-// end in that direction.
+// Distance of a point beyond a segment's ends, less the distance allowed beyond
+// an end in that direction.
 template <typename Allowed>
 double OutsideSegment(const Segment& s, const Vec3& point,
                       const Allowed& allowed) {
@@ -54,8 +54,8 @@ double OutsideSegment(const Segment& s, const Vec3& point) {
   return OutsideSegment(s, point, [](const Vec3&) { return 0.0; });
 }
 
-// How far a point (in the polytope's frame) lies beyond a facet's sides, less
-// what is allowed beyond a side with that outward normal.
+// Distance of a point (in the polytope's frame) beyond a facet's sides, less
+// the distance allowed beyond a side with that outward normal.
 template <typename Allowed>
 double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point,
                     const Allowed& allowed) {
@@ -116,7 +116,8 @@ double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
                                Feature feature_B, const Vec3& n,
                                const Witness& witness,
                                std::span<const Vec3> translation_vectors) {
-  // How far the farthest way out takes A against a direction in its frame.
+  // Largest displacement of A, by any way out, against a direction in A's
+  // frame.
   const auto back = [&](const Vec3& along) {
     double farthest = 0;
     for (const Vec3& way : translation_vectors) {

@@ -19,8 +19,9 @@ struct Witness {
 Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
                           Feature feature_B, const Vec3& n, double h);
 
-/// The point of A's edge nearest to B's, near the point of A where their lines
-/// pass each other: of edges that are nearly parallel that is far beyond both.
+/// The point of A's edge nearest to B's edge, found from the point on A where
+/// their lines pass each other. For nearly parallel edges that point is far
+/// beyond both.
 Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
                     const Vec3& crossing);
 
@@ -29,9 +30,9 @@ Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
 [[nodiscard]] double LateralOffset(const PosedPair& pair, Feature feature_A,
                                    Feature feature_B, const Witness& witness);
 
-/// The same with A out of the walls that stand upright on the contact's plane,
-/// or lean over it.
-/// @param n of the contact, unit, in A's frame.
+/// The same after A is moved out of the walls that stand upright on the
+/// contact's plane, or lean over it.
+/// @param n normal of the contact, unit, in A's frame.
 /// @param translation_vectors translations of A out of one wall each, in its
 /// frame, m.
 [[nodiscard]] double LateralOffsetOutOfWalls(

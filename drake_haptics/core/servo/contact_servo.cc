@@ -9,7 +9,7 @@
 namespace drake_haptics {
 namespace {
 
-// Less than the servo's, which is to answer while this one solves.
+// Below the UdpServo's priority, which must answer while this thread solves.
 constexpr int kPriority = 9;
 
 }  // namespace
@@ -49,8 +49,8 @@ void ContactServo::Run() {
   try {
     Serve();
   } catch (...) {
-    // Only where memory ends. No wrench is renewed any more, so that the servo
-    // releases, and the status says that the thread is gone.
+    // Out of memory. No wrench is published any more, so that the servo
+    // releases the force, and the status says that the thread has ended.
   }
   report_.is_running = false;
   Report();
@@ -80,7 +80,7 @@ void ContactServo::Solve() {
     servo_->Publish(wrench, load_[13]);
     ++report_.num_solved;
   } catch (const std::invalid_argument&) {
-    // Not a pose: what was published before holds, and is released.
+    // The handle's pose is not one: the last wrench is held and then released.
     ++report_.num_refused;
   }
 }

@@ -11,48 +11,48 @@
 
 namespace drake_haptics {
 
-/// What a ContactServo has done, at one moment.
+/// Counters and state of a ContactServo at one moment.
 struct ContactServoStatus {
-  std::int64_t num_solved = 0;   ///< periods
-  std::int64_t num_late = 0;     ///< periods that took longer than one
-  std::int64_t num_refused = 0;  ///< handles that could not be solved for
-  bool is_running = false;       ///< not closed
+  std::int64_t num_solved = 0;   ///< periods in which contact was solved
+  std::int64_t num_late = 0;     ///< periods that were overrun
+  std::int64_t num_refused = 0;  ///< handle states that were refused
+  bool is_running = false;       ///< whether the thread runs
 };
 
-/// Solves contact for a UdpServo on a thread of its own, in each of its
-/// periods with the device's newest handle. It gives the servo the local wrench
-/// as a slower loop would. So the servo never waits for it: where a period is
-/// overrun, the servo answers by the linear wrench of the last one.
+/// Solves contact for a UdpServo on its own thread, in each period with the
+/// device's newest handle state. It publishes the local wrench to the servo as
+/// a slower loop would, so that the servo never waits: when a period is
+/// overrun, the servo answers with the linear wrench of the last one.
 ///
-/// The loop says in each of its ticks that it goes on, by `Renew`. Its time is
-/// that of the wrench: where the loop stalls, the servo releases as ever.
+/// The loop calls `Renew` in each of its ticks. The wrench has the time of that
+/// call, so that the servo releases the force when the loop stalls.
 class ContactServo {
  public:
-  /// Starts to wait for the first `Renew`.
-  /// @param servo outlives this; nobody else may publish to it.
+  /// Starts the thread, which waits for the first `Renew`.
+  /// @param servo servo that outlives this; nothing else may publish to it.
   ContactServo(UdpServo* servo, ServoTool tool);
   ~ContactServo();
 
-  /// Goes on, with these from now on. One thread only.
-  /// @param F_applied other wrenches on the tool at To in W.
+  /// Goes on, with these gains and this wrench from now on. One thread only.
+  /// @param F_applied sum of the other wrenches on the tool at To in W.
   void Renew(const CouplingGains& gains, const Vec6& F_applied);
 
-  /// Part of the wrench that is shown, from the next `Renew` on; 1 at first.
-  /// The thread of `Renew` only.
+  /// Sets the share of the wrench that is shown from the next `Renew` on; 1 at
+  /// first. Only on the thread of `Renew`.
   void SetShare(double share) { share_ = share; }
 
-  /// The tool, newest. One thread only.
+  /// Newest state of the tool. One thread only.
   ToolState tool();
 
-  /// One thread only.
+  /// Newest status. One thread only.
   ContactServoStatus status();
 
   /// Ends the thread; later calls do nothing. Any thread.
   void Close() { thread_.Close(); }
 
  private:
-  // Gains, F_applied, share, time; pose and velocity: plain memory crosses
-  // threads.
+  // [gains, F_applied, share, time] and [pose, velocity] as plain memory, which
+  // can cross threads.
   using PlainLoad = std::array<double, 6 + 6 + 1 + 1>;
   using PlainTool = std::array<double, 7 + 6>;
 
@@ -63,21 +63,21 @@ class ContactServo {
 
   UdpServo* const servo_;
 
-  // To the thread.
+  // Written for the servo's thread.
   Seqlock<PlainLoad> load_box_;
 
-  // From the thread.
+  // Written by the servo's thread.
   Seqlock<PlainTool> tool_box_;
   Seqlock<ContactServoStatus> status_box_;
 
-  // Of the one thread that renews and reads.
+  // Used only by the thread that renews and reads.
   double share_ = 1;
   PlainTool read_tool_{};
   std::uint64_t tool_seen_ = 0;
   ContactServoStatus status_;
   std::uint64_t status_seen_ = 0;
 
-  // Of the thread alone.
+  // Used only by the servo's thread.
   ServoTool tool_;
   PeriodClock clock_;
   PlainLoad load_{};

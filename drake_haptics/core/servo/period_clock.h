@@ -4,15 +4,15 @@
 
 namespace drake_haptics {
 
-/// When what runs at a fixed rate is due. Time is an argument. A turn that
-/// comes too late is counted and not made up for: there are no bursts.
+/// Due times of turns at a fixed rate. Time is an argument. A late turn is
+/// counted and not made up for, so that there are no bursts.
 class PeriodClock {
  public:
   /// @param period s, above zero.
   explicit PeriodClock(double period) : period_(period) {}
 
   /// Ends a turn at `now`, s.
-  /// @returns s until the next one is due; 0 where that is now or has passed.
+  /// @returns time until the next turn is due, s; 0 if it is due now or late.
   double EndTurn(double now) {
     const bool is_late = has_begun_ && now > due_ + period_;
     num_late_ += is_late;
@@ -21,7 +21,7 @@ class PeriodClock {
     return due_ - now;
   }
 
-  /// Turns that took longer than a period.
+  /// Number of turns that took longer than a period.
   std::int64_t num_late() const { return num_late_; }
 
  private:

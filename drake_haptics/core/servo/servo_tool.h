@@ -9,16 +9,17 @@
 
 namespace drake_haptics {
 
-/// The tool as a servo solves it: each period is one exact step of contact
-/// (ConstraintStepper) from the device's newest handle, and ends in the local
-/// wrench that the servo's law carries on until the next. The clock and the
-/// device are the caller's.
+/// Solves the tool for a servo: each period is one exact step of contact
+/// (ConstraintStepper) from the device's newest handle state. It yields the
+/// local wrench that the servo's law extrapolates until the next period. The
+/// caller has the clock and the device.
 class ServoTool {
  public:
-  /// @param stepper of the servo's period, its objects posed; they rest.
+  /// @param stepper stepper with the servo's period and its objects posed; they
+  ///     rest.
   /// @param q_WB pose of the device's base in the world.
   /// @param start the tool's first state.
-  /// @throws std::invalid_argument unless the poses are poses and all is
+  /// @throws std::invalid_argument unless the poses are valid and all values
   ///         finite.
   ServoTool(ConstraintStepper stepper, const PoseVector& q_WB,
             const ToolState& start);
@@ -26,19 +27,22 @@ class ServoTool {
   double period() const { return stepper_.settings().period; }
   const ToolState& state() const { return state_; }
 
-  /// Puts the tool elsewhere, where friction holds it nowhere yet.
-  /// @throws std::invalid_argument for a state that is no pose or not finite.
+  /// Sets the state of the tool and clears the anchors of friction.
+  /// @throws std::invalid_argument for a pose that is not valid or a velocity
+  ///         that is not finite.
   void SetState(const ToolState& state);
 
   /// Changes the coupling.
   void SetGains(const CouplingGains& gains) { stepper_.SetGains(gains); }
 
   /// Advances the tool by a period.
-  /// @param q_BH, V_BH the handle in the device's base frame.
-  /// @param F_applied other wrenches on the tool at To in W: its weight.
+  /// @param q_BH, V_BH pose and velocity of the handle in the device's base
+  ///     frame.
+  /// @param F_applied sum of the other wrenches on the tool at To in W, such as
+  ///     its weight.
   /// @returns the wrench on the handle in the base frame at the period's
   ///          beginning, with the slopes of coupling and contact in series
-  ///          (ComputeHandleSlopes); `published_at` is left to the caller.
+  ///          (ComputeHandleSlopes); the caller sets `published_at`.
   /// @throws as ConstraintStepper::Step; the tool stays where it was.
   LocalWrench Step(const PoseVector& q_BH, const Vec6& V_BH,
                    const Vec6& F_applied);

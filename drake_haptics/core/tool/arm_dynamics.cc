@@ -6,7 +6,7 @@
 namespace drake_haptics {
 namespace {
 
-/// A time since the path began, or began again.
+/// Time since the path last began, s.
 double TimeOnPath(double time, double period) {
   return std::fmod(time, period);
 }
@@ -31,7 +31,7 @@ MovingPoseOf<T> PosePath::Evaluate(const T& time) const {
 
   const Eigen::Quaternion<T> R(value[0], value[1], value[2], value[3]);
   const Eigen::Quaternion<T> dR(rate[0], rate[1], rate[2], rate[3]);
-  // The change of length is the real part of the product, which is not read.
+  // The real part of the product, the change of length, is not needed.
   const Vec3Of<T> w = 2 * (dR * R.conjugate()).vec() / R.squaredNorm();
   MovingPoseOf<T> pose;
   pose.q << value.template head<4>().normalized(), value.template tail<3>();
@@ -43,8 +43,7 @@ SixJointArm::SixJointArm(const Mat6& J_WH, const PoseVector& q_WH)
     : R_WH_(QuaternionOf(q_WH)), p_WH_(q_WH.tail<3>()) {
   for (int i = 0; i < 6; ++i) {
     const Vec3 direction = J_WH.col(i).head<3>();
-    // The point of the axis nearest to Ho: Ho is swept with v = w x (Ho -
-    // point).
+    // The point of the axis nearest to Ho, since v = w × (Ho − point).
     const Vec3 v = J_WH.col(i).tail<3>();
     axes_[i] = {direction, p_WH_ + direction.cross(v)};
   }
@@ -53,7 +52,7 @@ SixJointArm::SixJointArm(const Mat6& J_WH, const PoseVector& q_WH)
 template <typename T>
 SixJointArm::HandleOf<T> SixJointArm::Evaluate(
     const Eigen::Matrix<T, 12, 1>& state) const {
-  // Motion from the zero pose of all that comes after the joint.
+  // Motion of the links after the joint, from the zero pose.
   Eigen::Quaternion<T> R = Eigen::Quaternion<T>::Identity();
   Vec3Of<T> p = Vec3Of<T>::Zero();
   std::array<AxisOf<T>, 6> axes;

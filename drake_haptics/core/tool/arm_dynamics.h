@@ -18,15 +18,15 @@ struct MovingPoseOf {
 };
 using MovingPose = MovingPoseOf<double>;
 
-/// A pose over time: each entry of its vector a cubic in each segment. The
-/// quaternion need not be of unit length; its direction is the rotation.
+/// A pose over time: in each segment, each entry of its vector is a cubic. The
+/// quaternion need not have unit length; its direction is the rotation.
 struct PosePath {
   /// Column i is the coefficient of (t − start)^i.
   using Cubic = Eigen::Matrix<double, 7, 4>;
 
-  std::vector<double> starts;  ///< of the segments, rising from 0, s
+  std::vector<double> starts;  ///< start of each segment, rising from 0, s
   std::vector<Cubic> cubics;   ///< one per segment; the last one never ends
-  double period;               ///< when it begins again, s; infinite if never
+  double period;               ///< time until it repeats, s, or infinity
 
   template <typename T>
   MovingPoseOf<T> Evaluate(const T& time) const;
@@ -47,8 +47,8 @@ class SixJointArm {
     Mat6Of<T> J_WH;  ///< spatial velocity of H per joint speed
   };
 
-  /// @param J_WH as in HandleOf, with all angles zero.
-  /// @param q_WH pose of H there.
+  /// @param J_WH spatial velocity of H per joint speed, with all angles zero.
+  /// @param q_WH pose of H with all angles zero.
   SixJointArm(const Mat6& J_WH, const PoseVector& q_WH);
 
   template <typename T>
@@ -66,7 +66,7 @@ class SixJointArm {
   Vec3 p_WH_;
 };
 
-/// A hand that draws the handle of an arm to X_WP(t) X_PH.
+/// A hand that pulls the handle of an arm to the pose X_WP(t) X_PH.
 struct ArmDynamics {
   SixJointArm arm;
   PosePath path;

@@ -11,7 +11,7 @@
 namespace drake_haptics {
 namespace {
 
-// Bit for bit: a sign of zero or a NaN is another value.
+// Compares bit for bit: 0 differs from −0, and a NaN equals itself.
 template <typename Vector>
 bool IsSame(const Vector& a, const Vector& b) {
   return std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
@@ -26,7 +26,7 @@ void ContactChain::SetLaw(ContactLaw law) {
 
 const ContactLaw& ContactChain::law() const {
   if (!law_.has_value()) {
-    throw std::logic_error("contacts push by a law, which was not set");
+    throw std::logic_error("no contact law was set");
   }
   return *law_;
 }

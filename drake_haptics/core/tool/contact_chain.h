@@ -11,57 +11,59 @@
 
 namespace drake_haptics {
 
-/// How contacts become a wrench.
+/// Law by which contacts become a wrench.
 struct ContactLaw {
-  double tolerance = 0;         ///< contacts below it push, m
-  std::optional<double> delta;  ///< cell of the octree, m; shared without
+  double tolerance = 0;  ///< distance below which contacts push, m
+  /// Size of the octree's cells, m; without it contacts share stiffness.
+  std::optional<double> delta;
   std::vector<MovingFrame> objects;
   std::vector<ContactMaterial> materials;  ///< one for each object
 };
 
 /// The chain from the tool's motion to the wrench of its contacts: query,
-/// clusters, penalty force. What was asked last is kept, so that who asks for
-/// the same again, or for a part of it, gets what is there.
+/// clusters, penalty force. The chain keeps its last results and returns them
+/// again for the same arguments.
 class ContactChain {
  public:
   void SetLaw(ContactLaw law);
 
-  /// Forgets what was asked last, as what the tracker watches was changed.
+  /// Forgets the last results. Call this after a change of the tracker.
   void Forget();
 
-  /// The contacts at a pose up to a tolerance, m.
+  /// Returns the contacts at a pose up to a tolerance, m.
   /// @throws as ContactTracker::Query and PoseFromVector.
   const ContactSet& FindContacts(const PoseVector& q_WT, double tolerance,
                                  ContactTracker* tracker);
 
-  /// Those that were asked for last.
+  /// Contacts that were found last.
   const ContactSet& contacts() const { return contacts_; }
 
-  /// Distance of the nearest of them, m; infinite without any.
+  /// Smallest distance of these contacts, m; infinite without any.
   double least_distance() const;
 
-  /// Those of them below it push, m.
+  /// Distance below which contacts push, m.
   /// @throws std::logic_error without a law.
   double tolerance_of_law() const { return law().tolerance; }
 
-  /// How many clusters these make at the wrench that was asked for last.
+  /// Number of clusters of the wrench that was found last.
   int num_clusters() const {
     return static_cast<int>(clusters_.clusters.size());
   }
 
-  /// The wrench of the contacts on the tool at To.
-  /// @throws also as ComputePenaltyWrench; std::logic_error without a law.
+  /// Returns the wrench of the contacts on the tool at To.
+  /// @throws as FindContacts and ComputePenaltyWrench; std::logic_error without
+  ///         a law.
   const WrenchModel& FindWrench(const ToolState& tool, ContactTracker* tracker);
 
  private:
   const ContactLaw& law() const;
 
   std::optional<ContactLaw> law_;
-  bool has_contacts_ = false;  // those of q_WT_ and tolerance_
+  bool has_contacts_ = false;  // for q_WT_ and tolerance_
   PoseVector q_WT_;
   double tolerance_ = 0;
   ContactSet contacts_;
-  bool has_wrench_ = false;  // that of q_WT_ and V_WT_ too
+  bool has_wrench_ = false;  // for q_WT_ and V_WT_
   Vec6 V_WT_;
   ClusterSet clusters_;
   WrenchModel wrench_;

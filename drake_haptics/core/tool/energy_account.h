@@ -4,12 +4,12 @@
 
 namespace drake_haptics {
 
-/// The largest fall of a sequence from any earlier value, and how much of it
-/// was allowed over the same stretch.
+/// The largest fall of a sequence from any earlier value, and the fall that was
+/// allowed over the same stretch.
 class LargestFall {
  public:
   /// @param level the next value of the sequence.
-  /// @param allowed sum of what each step so far was allowed to fall.
+  /// @param allowed sum of the falls that were allowed in the steps so far.
   void Add(double level, double allowed);
 
   double fall() const { return fall_; }
@@ -22,32 +22,32 @@ class LargestFall {
   double fall_allowed_ = 0;
 };
 
-/// The books of one part of a haptic loop, J. A part has ports, through which
-/// energy goes in and out, and may store some. What is neither stored nor came
-/// out is lost:
+/// Energy account of one part of a haptic loop, J. A part has ports, through
+/// which energy goes in and out, and may store energy. Energy that is neither
+/// stored nor came out is lost:
 ///   lost = in − out − (stored − stored at the start).
-/// A part that makes no energy never gets back what it lost: over no stretch
-/// of time does `lost` fall, but by what a tick's sampling explains.
+/// A passive part never regains lost energy: over any stretch of time, `lost`
+/// falls by no more than the sampling of its ticks explains.
 class EnergyAccount {
  public:
-  /// Says what the part holds where no tick has brought it there: at first, and
-  /// where its gains were changed.
+  /// Sets the stored energy where no tick leads to it: at first, and after a
+  /// change of gains.
   void Start(double stored) {
     stored_at_start_ += stored - stored_;
     stored_ = stored;
   }
 
-  /// Books what went into the part through one of its ports in a tick; negative
-  /// if it came out.
+  /// Books the energy that went into the part through one of its ports in a
+  /// tick; negative if it came out.
   void Flow(double energy) { (energy > 0 ? in_ : out_) += std::abs(energy); }
 
-  /// Books what a damper took in a tick; it is a part of what is lost.
+  /// Books the energy that a damper took in a tick; it is part of `lost`.
   void Damp(double energy) { damped_ += energy; }
 
   /// Ends a tick.
-  /// @param stored what the part holds now.
-  /// @param bound what it may seem to have made in this tick because its
-  ///        force is sampled and linearized.
+  /// @param stored energy that the part stores now.
+  /// @param bound energy that the part may seem to have made in this tick
+  ///     because its force is sampled and linearized.
   void Close(double stored, double bound);
 
   double in() const { return in_; }
@@ -56,11 +56,11 @@ class EnergyAccount {
   double lost() const { return in_ - out_ - (stored_ - stored_at_start_); }
   double damped() const { return damped_; }
 
-  /// The energy it made: the largest fall of `lost`.
+  /// Energy that the part made: the largest fall of `lost`.
   double created() const { return created_.fall(); }
-  /// What sampling explains of it, over the same stretch of time.
+  /// Energy that sampling explains over the same stretch of time.
   double bound() const { return created_.allowed(); }
-  /// The most that was made over a stretch of time beyond what sampling
+  /// Largest energy made over a stretch of time, less the energy that sampling
   /// explains there.
   double beyond() const { return beyond_.fall(); }
 

@@ -15,7 +15,7 @@ Vec6 Displacement(const PoseVector& from, const PoseVector& to) {
   return turn_dp;
 }
 
-// What the loop as a whole has in a tick, summed over its parts.
+// Energies of the whole loop in a tick, summed over its parts, J.
 struct Total {
   double stored = 0;
   double bound = 0;
@@ -31,7 +31,7 @@ void Close(EnergyAccount* part, double damped, double stored, double bound,
 }
 
 bool IsFinite(const EnergyLedger::Accounts& accounts) {
-  // What goes to or from any part is in one of these, and all that is stored.
+  // These accounts hold all stored energy and every flow between parts.
   return accounts.device.IsFinite() && accounts.display.IsFinite() &&
          accounts.tool.IsFinite();
 }

@@ -18,32 +18,32 @@ struct SourceReading {
   double stored = 0;  ///< its elastic or potential energy, J
 };
 
-/// What the ledger reads of a haptic loop at an instant between two ticks.
+/// State of a haptic loop at an instant between two ticks.
 struct LoopReading {
   ToolState tool;
-  PoseVector q_WH;       ///< of the handle
-  Vec6 F_Ho_W_rendered;  ///< held on the handle up to now, at Ho in W
-  WrenchModel coupling;  ///< of the virtual coupling on the tool
+  PoseVector q_WH;       ///< pose of the handle
+  Vec6 F_Ho_W_rendered;  ///< wrench held on the handle up to now, at Ho in W
+  WrenchModel coupling;  ///< wrench of the virtual coupling on the tool
   std::vector<SourceReading> sources;
 };
 
 /// Books, tick by tick, the energy that goes through each part of a haptic
 /// loop:
 ///   hand ⇄ display ⇄ coupling ⇄ tool ⇄ each source (contact, friction, …).
-/// tick_energy.h derives what a tick brings to each. All of it balances: what
-/// goes out of one part goes into its neighbor, to the last bit but rounding.
+/// tick_energy.h derives the energies of a tick. The accounts balance up to
+/// rounding: energy that leaves one part enters its neighbor.
 ///
-/// - `coupling` stores what its spring does.
-/// - A source stores what its reading says.
-/// - `tool` stores its kinetic energy E, and loses what the integrator makes
-///   of the work done on it: ½ ΔVᵀM ΔV − g. Its bound is max(0, g).
-/// - `display` is between the wrench that the coupling asks for and the one
-///   that is applied: the device's limits, and passivity control where there
-///   is. Nothing of it is sampling: its bound is zero.
-/// - `device` is the whole loop as the hand has it in its port:
-///   −F_Ho_W_renderedᵀ [a; Δp] goes in, exact unless the axis about which the
-///   handle turns changes within a tick. It stores, loses and may seem to make
-///   what all parts together do.
+/// - `coupling` stores the energy of its spring.
+/// - A source stores the energy of its reading.
+/// - `tool` stores its kinetic energy E. It loses ½ ΔVᵀM ΔV − g of the work
+///   done on it to the integrator. Its bound is max(0, g).
+/// - `display` is between the wrench that the coupling commands and the one
+///   that is rendered: the device's limits, and passivity control if there is
+///   any. Sampling explains none of its energy: its bound is zero.
+/// - `device` is the whole loop as the hand feels it at its port:
+///   −F_Ho_W_renderedᵀ [a; Δp] goes in, which is exact unless the handle's axis
+///   of rotation changes within a tick. Its stored and lost energies and its
+///   bound are the sums over all parts.
 class EnergyLedger {
  public:
   struct Accounts {
@@ -60,15 +60,15 @@ class EnergyLedger {
   EnergyLedger(const ToolInertia& inertia, const CouplingGains& gains,
                const PoseVector& q_HT, double h, std::size_t num_sources);
 
-  /// Books the tick between the reading before and this one; the first reading
-  /// only says what is stored. A reading or a tick with an energy that is not
-  /// finite is left out.
+  /// Books the tick between the last reading and this one; the first reading
+  /// only sets the stored energies. A reading or a tick with an energy that is
+  /// not finite is left out.
   /// @throws std::invalid_argument unless there is a reading of each source.
   void Add(const LoopReading& reading);
 
-  /// The coupling's gains are others from now on, or those of a source. The
-  /// tick up to the next reading is left out of the books, and so is what the
-  /// change puts into springs or takes out.
+  /// Goes on after a change of gains, of the coupling or of a source. The tick
+  /// up to the next reading is left out of the accounts, and so is the energy
+  /// that the change puts into springs or takes out.
   void BeginAgain(const CouplingGains& gains) {
     gains_ = gains;
     has_begun_ = false;
@@ -77,7 +77,7 @@ class EnergyLedger {
   const Accounts& accounts() const { return accounts_; }
 
  private:
-  // A reading and what follows from it.
+  // A reading and the terms that follow from it.
   struct Instant {
     LoopReading reading;
     ToolMotionTerms motion;
@@ -86,7 +86,7 @@ class EnergyLedger {
     double KineticEnergy() const;
   };
 
-  // False if there is no finite number to begin with.
+  // Starts the accounts. Returns false if an energy is not finite.
   bool Begin();
   void BookTick();
 
@@ -98,7 +98,7 @@ class EnergyLedger {
   Instant last_;
   Instant next_;
   Accounts accounts_;
-  Accounts booked_;  // Becomes accounts_ if it is finite.
+  Accounts booked_;  // becomes accounts_ if all of it is finite
 };
 
 }  // namespace drake_haptics

@@ -7,12 +7,13 @@
 namespace drake_haptics {
 namespace {
 
-// Directions in which coupling and contact together are softer than this part
-// of the stiffest are those in which nothing holds the tool.
+// Nothing holds the tool in directions in which coupling and contact together
+// are softer than this share of the stiffest direction.
 constexpr double kSoftest = 1e-12;
 
-// How the tool follows the handle: (Kc + Kt)⁺ Kc for matrices of one unit. With
-// the pseudoinverse it does not move where neither holds it.
+// Motion of the tool per motion of the handle, (Kc + Kt)⁺ Kc, for matrices of
+// one unit. By the pseudoinverse the tool does not move in directions in which
+// nothing holds it.
 Mat6 Follow(const Mat6& Kc, const Mat6& Kt) {
   const Eigen::SelfAdjointEigenSolver<Mat6> both(Kc + Kt);
   const Vec6 values = both.eigenvalues();
@@ -30,7 +31,7 @@ Mat6 Follow(const Mat6& Kc, const Mat6& Kt) {
 HandleSlopes ComputeHandleSlopes(const Vec3& p_HoTo_W,
                                  const WrenchModel& coupling,
                                  const WrenchModel& contact) {
-  // Turns are measured at a length, so that all entries have one unit.
+  // Rotations are scaled by a length, so that all entries have one unit.
   Vec6 length;
   length << Vec3::Constant(1 / kHandleLength), Vec3::Ones();
   const auto even = [&length](const Mat6& matrix) -> Mat6 {
@@ -43,12 +44,12 @@ HandleSlopes ComputeHandleSlopes(const Vec3& p_HoTo_W,
   const Mat6 Bc = even(coupling.B), Bt = even(contact.B);
   const Mat6 G = Follow(Kc, Kt);
   const Mat6 rest = Mat6::Identity() - G;
-  // Kc − Kc G, as a sum of two that cannot be negative.
+  // Kc − Kc G, as a sum of two positive semidefinite matrices.
   const Mat6 K = rest.transpose() * Kc * rest + G.transpose() * Kt * G;
   const Mat6 B = rest.transpose() * Bc * rest + G.transpose() * Bt * G;
 
   // A displacement [θ; p] of the handle at Ho moves its point at To by
-  // p + θ × p_HoTo; and back to the units of turns.
+  // p + θ × p_HoTo. Rotations are scaled back to rad.
   Mat6 shift = Mat6::Identity();
   shift.bottomLeftCorner<3, 3>() << 0, p_HoTo_W.z(), -p_HoTo_W.y(),
       -p_HoTo_W.z(), 0, p_HoTo_W.x(), p_HoTo_W.y(), -p_HoTo_W.x(), 0;

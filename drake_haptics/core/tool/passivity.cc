@@ -42,7 +42,7 @@ Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_Ho_W_desired,
   Vec6Of<T> braking;
   braking << bounds.max_rotational_damping * V_WH.template head<3>(),
       bounds.max_damping * V_WH.template tail<3>();
-  // What the largest dampings would dissipate in a tick.
+  // Energy that the largest dampings would dissipate in a tick.
   const T largest = bounds.period * braking.dot(V_WH);
   if (!(ValueOf(largest) > 0 && std::isfinite(ValueOf(largest)))) {
     return F_Ho_W_desired;

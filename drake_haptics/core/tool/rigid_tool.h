@@ -10,7 +10,7 @@ namespace drake_haptics {
 struct ToolInertia {
   double mass = 0;  ///< kg
   Vec3 p_TTcm;      ///< center of mass, in the tool's frame, m
-  Mat3 I_TTcm_T;    ///< rotational inertia about it, in T, kg·m²
+  Mat3 I_TTcm_T;    ///< rotational inertia about Tcm, in T, kg·m²
 };
 
 /// Pose [qw qx qy qz x y z] and spatial velocity [rad/s; m/s] of the tool's
@@ -42,8 +42,8 @@ ToolMotionTermsOf<T> ComputeMotionTerms(const ToolInertia& inertia,
 /// Advances the free rigid tool by one step of linearized backward Euler:
 ///   (M + h B + h² K) ΔV = h (F − b − h K V),  V ← V + ΔV,  δ = h V,
 /// where F, K, B are those of `wrench`.
-/// Stable for stiff contacts at any step, where explicit steps are bounded by
-/// 4 m / h² (stability-and-device notes, section 5).
+/// It is stable for stiff contacts at any step; explicit steps limit the
+/// stiffness to 4 m / h² (stability-and-device notes, section 5).
 /// @param h step, s.
 template <typename T>
 ToolStateOf<T> StepTool(const ToolInertia& inertia, const ToolStateOf<T>& state,

@@ -7,7 +7,7 @@
 namespace drake_haptics {
 namespace {
 
-// Work on the tool of the wrench that its step applies.
+// Work on the tool of the wrench that its step applies, J.
 double WorkOnTool(const WrenchModel& start, const TickMotion& motion) {
   const Vec6 delta = motion.delta();
   return delta.dot(start.F - start.B * motion.dV() - start.K * delta);

@@ -12,26 +12,26 @@
 namespace drake_haptics {
 
 /// The tool's part of a haptic loop without Drake: one call goes from the
-/// handle to the tool's next state. It computes what the systems of a loop
-/// without effects compute, in their order.
+/// handle to the tool's next state. It computes the same as the systems of a
+/// loop without effects, in their order.
 class ToolLoop {
  public:
   struct Settings {
     ToolInertia inertia;
     CouplingGains gains;
-    PoseVector q_HT;                         ///< the tool in the handle
+    PoseVector q_HT;                         ///< pose of the tool in the handle
     std::vector<ContactMaterial> materials;  ///< one for each object
     double period = 0;                       ///< s
   };
 
-  /// @param tracker knows where the objects are; they rest.
+  /// @param tracker tracker with its objects posed; they rest.
   /// @throws std::invalid_argument unless there is a material for each object.
   ToolLoop(ContactTracker tracker, Settings settings);
 
   /// Advances the tool by a tick.
   void Step(const PoseVector& q_WH, const Vec6& V_WH, ToolState* state);
 
-  /// Those of the last tick, at its beginning.
+  /// Contacts at the beginning of the last tick.
   const ContactSet& contacts() const { return chain_.contacts(); }
 
  private:

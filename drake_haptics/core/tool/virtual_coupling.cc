@@ -5,9 +5,9 @@
 namespace drake_haptics {
 namespace {
 
-// Shortens v to a limit. Returns whether it was longer, by more than rounding:
-// a spring that yields and a damper at rest are not. Then the slope is that of
-// what is left.
+// Shortens v to a limit if it is longer by more than rounding, as a yielding
+// spring with its damper at rest is not. Then writes the slope of the shortened
+// v and returns true.
 template <typename T>
 bool Shorten(double limit, Vec3Of<T>* v, Mat3Of<T>* slope) {
   constexpr double kRounding = 1e-14;
@@ -22,8 +22,8 @@ bool Shorten(double limit, Vec3Of<T>* v, Mat3Of<T>* slope) {
   return true;
 }
 
-// The pull of a spring and a damper of equal gains in all directions, and what
-// it loses per displacement and speed.
+// Load of a spring and a damper with equal gains in all directions, and its
+// stiffness and damping.
 template <typename T>
 struct Pull {
   Vec3Of<T> load;
@@ -35,7 +35,7 @@ struct Pull {
         K(Vec3Of<T>::Constant(stiffness).asDiagonal()),
         B(Vec3Of<T>::Constant(damping).asDiagonal()) {
     Mat3Of<T> slope;
-    // The stretch, not the load: a stiff spring's may be infinite.
+    // Shortens the stretch, since the load of a stiff spring may be infinite.
     if (Shorten(limit / stiffness, &load, &slope)) K = slope * stiffness;
     load *= stiffness;
     load += damping * speed;
@@ -46,7 +46,7 @@ struct Pull {
   }
 };
 
-// Energy of a spring that yields at a limit.
+// Energy of a spring that yields at a limit, J.
 template <typename T>
 T YieldingEnergy(double stiffness, double limit, const Vec3Of<T>& stretch) {
   const T square = stretch.squaredNorm();

@@ -1,14 +1,14 @@
-/* The gate: what stands between commands from anywhere and a hand.
+/* The gate: it protects a hand from commands of any origin.
  *
- * It runs in the driver, beside the hardware, and decides which command is
- * obeyed and what wrench is shown. A pure state machine: no clock, no socket,
- * no allocation; time is an argument, the work of a call is bounded, and force
- * and torque never exceed the limits in any state. docs/device-protocol.md has
- * its diagram. In each tick a driver calls, in this order:
+ * It runs in the driver, beside the hardware, and decides which commands are
+ * obeyed and which wrench is shown. It is a pure state machine: no clock, no
+ * socket, no allocation; time is an argument, the work of a call is bounded,
+ * and force and torque never exceed the limits in any state. For its diagram
+ * see docs/device-protocol.md. In each tick a driver calls, in this order:
  *
- *   dh_gate_receive()  for each packet that came, up to some bound
+ *   dh_gate_receive()  for each packet received, up to some bound
  *   dh_gate_fail()     if its own hardware is at fault
- *   dh_gate_step()     once, and shows that wrench
+ *   dh_gate_step()     once, and shows the wrench that it returns
  *
  * C99, and C++ as well. Needs sqrt() of the C library (-lm). */
 #ifndef DRAKE_HAPTICS_GATE_H_
@@ -19,33 +19,33 @@
 
 enum { DH_REMEMBERED_SESSIONS = 8 };
 
-/* A host that was heard. */
+/* A host that sent a command which was accepted. */
 typedef struct dh_gate_session {
-  uint32_t session;   /* 0 for an empty place */
-  uint32_t sequence;  /* of the newest command that was accepted */
-  uint8_t may_enable; /* that command disabled, and nothing has ended it */
+  uint32_t session;   /* 0 if the entry is empty */
+  uint32_t sequence;  /* sequence of its newest accepted command */
+  uint8_t may_enable; /* it disabled first, and may enable now */
 } dh_gate_session;
 
-/* Read what you like; change it through the functions. */
+/* A gate. Read any field, but change it only through the functions. */
 typedef struct dh_gate {
   dh_gate_limits limits;
   dh_gate_state state;
-  dh_fault fault;            /* DH_FAULT_NONE but in DH_FAULT */
-  uint32_t session;          /* served while active, else 0 */
-  uint32_t command_sequence; /* of the newest command that was accepted */
-  uint8_t enabled;           /* while active: what the newest command asks */
-  double command_F_Ho_B[6];  /* the newest wrench to show, within the limits */
-  double scale;              /* of it that is shown, 0 to 1 */
+  dh_fault fault;            /* DH_FAULT_NONE except in DH_FAULT */
+  uint32_t session;          /* session served while active, else 0 */
+  uint32_t command_sequence; /* sequence of the newest accepted command */
+  uint8_t enabled;           /* while active: if the newest command enables */
+  double command_F_Ho_B[6];  /* newest commanded wrench, within the limits */
+  double scale;              /* share of that wrench that is shown, 0 to 1 */
   double F_Ho_B[6];          /* the wrench that is shown */
-  uint64_t now_ns;           /* the latest time that was told */
-  uint64_t received_ns;      /* when the newest command came, while active */
-  uint64_t ttl_ns;           /* its time to live */
+  uint64_t now_ns;           /* time of the latest call */
+  uint64_t received_ns;      /* time of the newest enabling command */
+  uint64_t ttl_ns;           /* time to live of that command */
   uint64_t counts[DH_VERDICT_COUNT];                /* packets by verdict */
-  dh_gate_session sessions[DH_REMEMBERED_SESSIONS]; /* latest heard first */
+  dh_gate_session sessions[DH_REMEMBERED_SESSIONS]; /* most recent first */
 } dh_gate;
 
-/* Makes a gate that is idle and has heard nobody. Returns NULL; or, if the
- * limits are not possible, why not, and the gate never shows any wrench. */
+/* Makes an idle gate that knows no host. Returns NULL, or why the limits are
+ * invalid; the gate then never shows any wrench. */
 static inline const char* dh_gate_init(dh_gate* gate,
                                        const dh_gate_limits* limits) {
   const char* problem = dh_limits_problem(limits);
@@ -56,7 +56,7 @@ static inline const char* dh_gate_init(dh_gate* gate,
   return problem;
 }
 
-/* How many packets were refused. */
+/* Number of packets refused. */
 static inline uint64_t dh_gate_rejected(const dh_gate* gate) {
   uint64_t sum = 0;
   int i;
@@ -75,7 +75,7 @@ static inline void dh_gate_release(dh_gate* gate, dh_gate_state state,
   memset(gate->F_Ho_B, 0, sizeof gate->F_Ho_B);
 }
 
-/* From now on no host may enable before it has disabled once more. */
+/* After this, a host must disable again before it may enable. */
 static inline void dh_gate_forget_permissions(dh_gate* gate) {
   int i;
   for (i = 0; i < DH_REMEMBERED_SESSIONS; ++i) {
@@ -83,20 +83,21 @@ static inline void dh_gate_forget_permissions(dh_gate* gate) {
   }
 }
 
-/* Zero at once, and latched. The first cause is kept. */
+/* Zeroes the wrench at once and latches the fault. Keeps the first cause. */
 static inline void dh_gate_enter_fault(dh_gate* gate, dh_fault fault) {
   dh_gate_release(gate, DH_FAULT,
                   gate->state == DH_FAULT ? gate->fault : fault);
   dh_gate_forget_permissions(gate);
 }
 
-/* The driver's own hardware is at fault. */
+/* Reports a fault of the driver's own hardware. */
 static inline void dh_gate_fail(dh_gate* gate) {
   dh_gate_enter_fault(gate, DH_FAULT_DEVICE);
 }
 
-/* Ramps in while commands are fresh, else out; at zero it ends. What is shown
- * rises by a twentieth of full in one call at most, however late that comes. */
+/* Ramps in while commands are fresh, else out; at zero the gate is idle or at
+ * fault. The scale rises by at most a twentieth per call, however late the
+ * call. */
 static inline void dh_gate_ramp(dh_gate* gate, uint64_t passed_ns) {
   const uint64_t age_ns = gate->now_ns - gate->received_ns;
   const int fresh = age_ns <= gate->ttl_ns;
@@ -107,10 +108,10 @@ static inline void dh_gate_ramp(dh_gate* gate, uint64_t passed_ns) {
     if (gate->scale > 1) gate->scale = 1;
   } else {
     if (gate->enabled && age_ns - gate->ttl_ns < passed_ns) {
-      passed_ns = age_ns - gate->ttl_ns; /* since the command went stale */
+      passed_ns = age_ns - gate->ttl_ns; /* time since the command went stale */
     }
     gate->scale -= 1e-9 * (double)passed_ns / gate->limits.ramp_out_s;
-    if (gate->scale < 1e-9) gate->scale = 0; /* it is round-off */
+    if (gate->scale < 1e-9) gate->scale = 0; /* round-off */
   }
   for (i = 0; i < 6; ++i)
     gate->F_Ho_B[i] = gate->scale * gate->command_F_Ho_B[i];
@@ -119,7 +120,7 @@ static inline void dh_gate_ramp(dh_gate* gate, uint64_t passed_ns) {
   if (gate->enabled && !fresh) dh_gate_enter_fault(gate, DH_FAULT_STALE);
 }
 
-/* Lets time pass. A clock that went backwards is a fault, and 0. */
+/* Advances the time. If the clock went backwards, faults and returns 0. */
 static inline int dh_gate_advance(dh_gate* gate, uint64_t now_ns) {
   const uint64_t before_ns = gate->now_ns;
   gate->now_ns = now_ns;
@@ -131,7 +132,7 @@ static inline int dh_gate_advance(dh_gate* gate, uint64_t now_ns) {
   return 1;
 }
 
-/* The place of that session; DH_REMEMBERED_SESSIONS if it is not remembered. */
+/* Index of the session; DH_REMEMBERED_SESSIONS if it is not remembered. */
 static inline int dh_gate_find(const dh_gate* gate, uint32_t session) {
   int i = 0;
   while (i < DH_REMEMBERED_SESSIONS && gate->sessions[i].session != session) {
@@ -140,8 +141,8 @@ static inline int dh_gate_find(const dh_gate* gate, uint32_t session) {
   return i;
 }
 
-/* Puts the session first, with the command as its newest; the one that was
- * heard longest ago makes room. */
+/* Puts the session first, with this command as its newest. A new session
+ * replaces the least recent one. */
 static inline void dh_gate_remember(dh_gate* gate, const dh_command* command) {
   int i = dh_gate_find(gate, command->session);
   if (i == DH_REMEMBERED_SESSIONS) --i;
@@ -152,7 +153,7 @@ static inline void dh_gate_remember(dh_gate* gate, const dh_command* command) {
   gate->command_sequence = command->sequence;
 }
 
-/* Whether a well-formed command is to be obeyed. */
+/* Verdict on a well-formed command: DH_ACCEPTED if it is to be obeyed. */
 static inline dh_verdict dh_gate_judge(const dh_gate* gate,
                                        const dh_command* command) {
   const int place = dh_gate_find(gate, command->session);
@@ -174,7 +175,7 @@ static inline dh_verdict dh_gate_judge(const dh_gate* gate,
 
 static inline void dh_gate_obey(dh_gate* gate, const dh_command* command) {
   if (!command->enable) {
-    gate->enabled = 0; /* while active, it ramps out as time passes */
+    gate->enabled = 0; /* while active, the wrench ramps out */
     if (gate->state == DH_FAULT) dh_gate_release(gate, DH_IDLE, DH_FAULT_NONE);
     return;
   }
@@ -195,9 +196,8 @@ static inline void dh_gate_obey(dh_gate* gate, const dh_command* command) {
                 gate->command_F_Ho_B + 3);
 }
 
-/* Takes a packet in. What is refused changes nothing but the counts, except
- * that a wrench that is not finite and a clock that went backwards are faults.
- */
+/* Receives a packet. A refused packet changes only the counts, except that a
+ * wrench that is not finite and a clock that went backwards are faults. */
 static inline dh_verdict dh_gate_receive(dh_gate* gate, uint64_t now_ns,
                                          const uint8_t* bytes, size_t size) {
   dh_command command;
@@ -217,8 +217,8 @@ static inline dh_verdict dh_gate_receive(dh_gate* gate, uint64_t now_ns,
   return verdict;
 }
 
-/* Lets time pass, looks at the handle's pose and velocity and gives the wrench
- * to show. Call it in each tick, in all states. */
+/* Advances the time, checks the handle's pose and velocity and returns the
+ * wrench to show. Call it in each tick, in all states. */
 static inline void dh_gate_step(dh_gate* gate, uint64_t now_ns,
                                 const double X_BH[7], const double V_BH[6],
                                 double F_Ho_B[6]) {
@@ -234,8 +234,8 @@ static inline void dh_gate_step(dh_gate* gate, uint64_t now_ns,
   memcpy(F_Ho_B, gate->F_Ho_B, sizeof gate->F_Ho_B);
 }
 
-/* Fills in what a gate knows of a state: whom it serves, what it shows, its
- * limits and how it stands. The rest is the driver's. */
+/* Fills in the gate's fields of a state: session, shown wrench, newest command,
+ * refusals, limits, gate state and fault. The driver fills in the rest. */
 static inline void dh_gate_tell(const dh_gate* gate, dh_state* state) {
   state->session = gate->session;
   memcpy(state->F_Ho_B, gate->F_Ho_B, sizeof gate->F_Ho_B);

@@ -1,4 +1,4 @@
-/* What a gate allows, and vectors held within it, whatever their numbers. */
+/* Limits of a gate, and vectors held within them, however large. */
 #ifndef DRAKE_HAPTICS_LIMITS_H_
 #define DRAKE_HAPTICS_LIMITS_H_
 
@@ -7,20 +7,20 @@
 
 #include "wire.h"
 
-/* What a gate allows. A maximum of zero shows nothing, as for the torque of a
+/* Limits of a gate. A maximum of zero shows nothing: use it for the torque of a
  * device that has none. */
 typedef struct dh_gate_limits {
-  double max_force_N;             /* of the norm, >= 0 */
-  double max_torque_Nm;           /* of the norm, >= 0 */
-  double max_speed_m_per_s;       /* of the handle while active, > 0 */
-  double max_turn_rate_rad_per_s; /* likewise */
-  double ramp_in_s;               /* none to full, 0.001 to 10 */
-  double ramp_out_s;              /* full to none, 0.001 to 1 */
-  double max_ttl_s;               /* the longest life of a command, 1e-6 to 1 */
+  double max_force_N;             /* largest norm of the force, >= 0 */
+  double max_torque_Nm;           /* largest norm of the torque, >= 0 */
+  double max_speed_m_per_s;       /* speed of the handle while active, > 0 */
+  double max_turn_rate_rad_per_s; /* its turn rate while active, > 0 */
+  double ramp_in_s;               /* time from zero to full, 0.001 to 10 */
+  double ramp_out_s;              /* time from full to zero, 0.001 to 1 */
+  double max_ttl_s;               /* longest life of a command, 1e-6 to 1 */
 } dh_gate_limits;
 
-/* Limits for a device of that strength: in over 200 ms, out within 20 ms, a
- * handle below 2 m/s and 30 rad/s, commands that live 100 ms at most. */
+/* Defaults for a device of this strength: ramp in over 200 ms, ramp out within
+ * 20 ms, handle below 2 m/s and 30 rad/s, commands live at most 100 ms. */
 static inline dh_gate_limits dh_gate_default_limits(double max_force_N,
                                                     double max_torque_Nm) {
   dh_gate_limits limits;
@@ -38,7 +38,7 @@ static inline int dh_is_within(double x, double low, double high) {
   return dh_is_finite(x) && x >= low && x <= high;
 }
 
-/* What is wrong with limits; NULL if nothing is. */
+/* Returns what is wrong with the limits, or NULL. */
 static inline const char* dh_limits_problem(const dh_gate_limits* limits) {
   if (!dh_is_within(limits->max_force_N, 0, FLT_MAX)) {
     return "max_force_N must be finite and at least 0";
@@ -72,8 +72,8 @@ static inline int dh_are_finite(const double* values, int count) {
   return 1;
 }
 
-/* The norm of a finite vector as largest * norm, which 1e308 cannot overflow:
- * divides v by its largest component and returns that. */
+/* Splits the norm of a finite vector into largest * norm, so that 1e308 cannot
+ * overflow: divides v by its largest component, which it returns. */
 static inline double dh_split_norm(const double v[3], double unit[3],
                                    double* norm) {
   double largest = 0;
@@ -93,13 +93,13 @@ static inline int dh_exceeds(const double v[3], double limit) {
   return largest > 0 && largest > limit / norm;
 }
 
-/* A finite vector, shortened to the limit where it is longer. */
+/* Shortens a finite vector to the limit if it is longer. */
 static inline void dh_clamp_norm(const double v[3], double limit,
                                  double out[3]) {
   double unit[3], norm;
   const double largest = dh_split_norm(v, unit, &norm);
-  /* By four round-offs less, so that nobody who forms the norm of what comes
-   * out finds it above the limit. */
+  /* Four round-offs less, so that the norm of the result never exceeds the
+   * limit, however it is computed. */
   const double allowed = limit * (1 - 4 * DBL_EPSILON);
   int i;
   for (i = 0; i < 3; ++i) {

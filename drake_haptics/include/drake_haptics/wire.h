@@ -28,50 +28,50 @@ enum {
 /* Whether a device shows force. */
 typedef enum dh_gate_state {
   DH_IDLE = 0,   /* no force; waits to be enabled */
-  DH_ACTIVE = 1, /* shows what is asked, within its limits */
-  DH_FAULT = 2   /* no force until it has been disabled */
+  DH_ACTIVE = 1, /* shows the commanded wrench, within its limits */
+  DH_FAULT = 2   /* no force until a host disables */
 } dh_gate_state;
 
 /* Why a device is in DH_FAULT. */
 typedef enum dh_fault {
   DH_FAULT_NONE = 0,
   DH_FAULT_STALE = 1,      /* commands stopped for longer than their life */
-  DH_FAULT_NOT_FINITE = 2, /* a command or the handle's state: NaN, infinite */
+  DH_FAULT_NOT_FINITE = 2, /* NaN or infinity in command or handle */
   DH_FAULT_OVERSPEED = 3,  /* the handle was faster than allowed */
   DH_FAULT_CLOCK = 4,      /* the driver's clock went backwards */
   DH_FAULT_DEVICE = 5      /* the driver found its hardware at fault */
 } dh_fault;
 
-/* What became of a packet. Those up to DH_WRONG_FIELD are about the packet
- * alone; the later ones are a gate's (gate.h). */
+/* Verdict on a packet. Verdicts up to DH_WRONG_FIELD concern the packet alone;
+ * the later ones are a gate's (gate.h). */
 typedef enum dh_verdict {
   DH_ACCEPTED = 0,
-  DH_TOO_SHORT = 1,     /* no room for a header */
-  DH_WRONG_MAGIC = 2,   /* none of ours */
-  DH_WRONG_VERSION = 3, /* not version 1 */
-  DH_WRONG_KIND = 4,    /* a state where a command belongs, or neither */
-  DH_WRONG_SIZE = 5,    /* not the bytes that the kind has, or that it tells */
-  DH_WRONG_CRC = 6,     /* damaged on its way */
-  DH_WRONG_FIELD = 7,   /* a value that version 1 does not have */
-  DH_FOREIGN_SESSION = 8,     /* another host is being served */
-  DH_OLD_SEQUENCE = 9,        /* a duplicate, or older than what came */
+  DH_TOO_SHORT = 1,       /* no room for a header */
+  DH_WRONG_MAGIC = 2,     /* not a packet of this protocol */
+  DH_WRONG_VERSION = 3,   /* not version 1 */
+  DH_WRONG_KIND = 4,      /* not the expected kind */
+  DH_WRONG_SIZE = 5,      /* not the size of its kind, or not as it states */
+  DH_WRONG_CRC = 6,       /* damaged on its way */
+  DH_WRONG_FIELD = 7,     /* a value that version 1 does not have */
+  DH_FOREIGN_SESSION = 8, /* another host is being served */
+  DH_OLD_SEQUENCE = 9,    /* a duplicate, or older than an accepted one */
   DH_NOT_DISABLED_FIRST = 10, /* enable, but this host did not disable before */
-  DH_AT_FAULT = 11,           /* enable, but the fault was not left yet */
+  DH_AT_FAULT = 11,           /* enable, but the fault is still latched */
   DH_NOT_FINITE = 12,         /* a wrench with NaN or infinity: a fault */
   DH_CLOCK_WENT_BACK = 13,    /* the driver's own clock: a fault */
   DH_VERDICT_COUNT = 14
 } dh_verdict;
 
-/* What the device tells. */
+/* State of the device, as its driver sends it. */
 typedef struct dh_state {
-  uint32_t session;  /* of the host that is served; 0 for none */
+  uint32_t session;  /* session of the host that is served; 0 for none */
   uint32_t sequence; /* rises by one from packet to packet, and wraps */
-  uint64_t time_ns;  /* of the sample, by the driver's monotonic clock */
+  uint64_t time_ns;  /* time of the sample, driver's monotonic clock */
   double X_BH[7];    /* the handle's pose, m */
   double V_BH[6];    /* its spatial velocity, rad/s and m/s */
   double F_Ho_B[6];  /* the wrench shown at Ho, N m and N */
   uint32_t boot;     /* random in each run of the driver, never 0 */
-  uint32_t command_sequence; /* of the newest command that was accepted */
+  uint32_t command_sequence; /* sequence of the newest accepted command */
   uint32_t buttons;          /* bit i is set while button i is held */
   uint32_t rejected;         /* packets refused since the driver started */
   float max_force_N;
@@ -80,26 +80,26 @@ typedef struct dh_state {
   uint8_t fault; /* a dh_fault */
 } dh_state;
 
-/* What a host asks for. */
+/* Command of a host. */
 typedef struct dh_command {
   uint32_t session;        /* random in each run of the host, never 0 */
   uint32_t sequence;       /* rises by one from packet to packet, and wraps */
-  uint64_t time_ns;        /* of sending, by the host's monotonic clock */
+  uint64_t time_ns;        /* time of sending, host's monotonic clock */
   double F_Ho_B[6];        /* the wrench to show at Ho, N m and N */
-  uint32_t state_sequence; /* of the state that this answers */
-  uint32_t ttl_us;         /* time to live: it is stale after this, us */
+  uint32_t state_sequence; /* sequence of the state that this answers */
+  uint32_t ttl_us;         /* time to live, us; then the command is stale */
   uint8_t enable;          /* 1 to show force, 0 to show none */
 } dh_command;
 
 /* Whether sequence number a comes after b (serial-number arithmetic, RFC 1982:
- * less than half of all numbers ahead, across the wrap at 2^32). */
+ * a is ahead by less than half of all numbers, across the wrap at 2^32). */
 static inline int dh_is_newer(uint32_t a, uint32_t b) {
   const uint32_t ahead = a - b;
   return ahead != 0 && ahead < UINT32_C(0x80000000);
 }
 
-/* Whether x is neither NaN nor infinite; by its bits, since -ffast-math takes
- * the meaning out of isfinite(). */
+/* Whether x is neither NaN nor infinite. Tests its bits, since -ffast-math
+ * breaks isfinite(). */
 static inline int dh_is_finite(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -107,8 +107,8 @@ static inline int dh_is_finite(double x) {
 }
 
 /* CRC-32 of zlib, PNG and Ethernet (reflected polynomial 0xEDB88320), a byte at
- * a time: the remainder of a byte is that of its two halves, exclusively ored.
- */
+ * a time: the remainder of a byte is the exclusive or of the remainders of its
+ * halves. */
 static inline uint32_t dh_crc32(const uint8_t* bytes, size_t size) {
   static const uint32_t kOfLowHalf[16] = {
       0x00000000, 0x77073096, 0xee0e612c, 0x990951ba, 0x076dc419, 0x706af48f,
@@ -192,7 +192,7 @@ static inline void dh_put_crc(size_t size, uint8_t* bytes) {
   dh_put(dh_crc32(bytes, size - 4), 4, bytes + size - 4);
 }
 
-/* Whether the bytes are one whole packet of that kind and size. */
+/* Checks that the bytes are one whole packet of this kind and size. */
 static inline dh_verdict dh_check_packet(const uint8_t* bytes, size_t size,
                                          uint8_t kind, size_t kind_size) {
   if (size < DH_HEADER_SIZE) return DH_TOO_SHORT;
@@ -227,7 +227,7 @@ static inline void dh_pack_state(const dh_state* state, uint8_t* bytes) {
   dh_put_crc(DH_STATE_SIZE, bytes);
 }
 
-/* Reads a packet; `state` is written only where it is DH_ACCEPTED. Its numbers
+/* Reads a packet; writes `state` only if it returns DH_ACCEPTED. Its numbers
  * may be NaN or infinite. */
 static inline dh_verdict dh_unpack_state(const uint8_t* bytes, size_t size,
                                          dh_state* state) {
@@ -266,7 +266,7 @@ static inline void dh_pack_command(const dh_command* command, uint8_t* bytes) {
   dh_put_crc(DH_COMMAND_SIZE, bytes);
 }
 
-/* Reads a packet; `command` is written only where it is DH_ACCEPTED. Its wrench
+/* Reads a packet; writes `command` only if it returns DH_ACCEPTED. Its wrench
  * may be NaN or infinite. */
 static inline dh_verdict dh_unpack_command(const uint8_t* bytes, size_t size,
                                            dh_command* command) {

@@ -59,7 +59,7 @@ def test_two_at_one_place_are_as_stiff_as_one() -> None:
 
 def test_columns_must_match_and_be_ordered() -> None:
     columns = _columns([0.0, 0.0], [[0, 0, 1], [0, 0, 1]])
-    with pytest.raises(ValueError, match="one row for a contact"):
+    with pytest.raises(ValueError, match="one row for each contact"):
         _core.contact_set(**{**columns, "p_WCa": np.zeros((1, 3))})
     descending = np.array([1, 0], dtype=np.int32)
     with pytest.raises(ValueError, match="ordered"):

@@ -130,7 +130,7 @@ def test_a_bad_trajectory_asks_nothing() -> None:
     bad[-1] = np.nan
     with pytest.raises(ValueError, match=r"X_WA\[24\]"):
         pair.query_trajectory(bad, np.eye(4))
-    with pytest.raises(ValueError, match="as many poses as each other, got 25 and 3"):
+    with pytest.raises(ValueError, match="same number of poses, got 25 and 3"):
         pair.query_trajectory(X[25:], X[:3])
     same_columns(
         pair.query_trajectory(X[25:], np.eye(4)),
