@@ -76,7 +76,7 @@ def get_picture(name: str) -> Path:
 
 
 def make_columns() -> str:
-    """Returns what the columns mean, as a list."""
+    """Returns a list of the meanings of the columns."""
     return "\n".join(f"- **{c.head}**, {c.unit}: {c.meaning}" for c in COLUMNS) + "\n"
 
 
@@ -109,7 +109,7 @@ def make_advice(studies: dict[str, AccuracyStudy]) -> str:
 
 
 def make_budgets(choices: dict[str, BudgetChoice]) -> str:
-    """Returns what was given up for budgets, a row for each scene."""
+    """Returns the concessions for budgets, a row for each scene."""
     rows = []
     for name, choice in choices.items():
         scene = load_scene(find_scene(name))
@@ -148,8 +148,8 @@ def measure_errors(
     """Returns cells of the errors of settings, by knob and setting.
 
     Args:
-        name: Of the scene.
-        is_meant: Whether a setting is.
+        name: Name of the scene.
+        is_meant: Function that tells whether a setting is meant.
     """
     scene = load_scene(find_scene(name))
     motion = record_motion(scene)
@@ -178,11 +178,11 @@ def with_errors(page: str, name: str, errors: dict[tuple[str, str], list[str]]) 
 
 
 def hold_budget(name: str, study: AccuracyStudy | None) -> BudgetChoice:
-    """Holds a budget of four fifths of what a scene takes by itself.
+    """Holds a budget of four fifths of a scene's own time.
 
     Args:
-        name: Of the scene.
-        study: Of it; a quick one is made where not given.
+        name: Name of the scene.
+        study: Study of the scene; a quick one is made where not given.
     """
     scene = load_scene(find_scene(name))
     with progress_bar() as show:

@@ -36,7 +36,7 @@ MASS_KG, PERIOD_S = 0.1, 1e-3
 
 
 def boundary_rows() -> Iterator[list[str]]:
-    """The peak of each delay, from the closed form and from the loop's eigenvalues."""
+    """Yields the peak of each delay, by the closed form and the loop's eigenvalues."""
     yield [
         "delay d",
         "largest α",
@@ -70,7 +70,7 @@ def boundary_rows() -> Iterator[list[str]]:
 
 
 def wall_rows() -> Iterator[list[str]]:
-    """Walls with damping and a hand: laws, eigenvalues and simulation."""
+    """Yields walls with damping and a hand: laws, eigenvalues and simulation."""
     yield [
         "b",
         "B",
@@ -105,7 +105,7 @@ TABLES = {"boundaries": boundary_rows, "walls": wall_rows}
 
 
 def with_tables(page: str) -> str:
-    """Returns the page with the tables of now."""
+    """Returns the page with the present tables."""
     for name, rows in TABLES.items():
         table = to_markdown(rows())
         print(table)

@@ -1,4 +1,4 @@
-"""How much the wrench changes on a walk in contact, and why: query or clusters."""
+"""Measures how much the wrench changes on a walk in contact: by query or clusters."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ _ZEROS3, _ZEROS6 = np.zeros((1, 3)), np.zeros((1, 6))
 
 @dataclass(frozen=True)
 class QueryChange:
-    """What the query changed in a step: the input of the rest of the chain, m.
+    """Changes of the query in a step, the input of the rest of the chain, m.
 
-    Each is that of the contact that changed most.
+    Each is the change of the contact that changed most.
 
     Attributes:
         came: Compression of a contact that came or went.
-        distance: Change of the distance of one that stayed.
+        distance: Change of the distance of a contact that stayed.
         normal: Its compression times the turn of its normal.
         point: Its compression times the shift of its point over L.
         patch: Its compression times the change of its extent, relative to the larger,
@@ -50,7 +50,7 @@ class QueryChange:
 def compare(
     a: _core.ContactSet, b: _core.ContactSet, tolerance_m: float, size_m: float
 ) -> QueryChange:
-    """What changed from the contacts `a` to the contacts `b`."""
+    """Returns the changes from the contacts `a` to the contacts `b`."""
     c_a, c_b = calc_compression(a, tolerance_m), calc_compression(b, tolerance_m)
     keys_a, keys_b = _keys(a), _keys(b)
     if np.array_equal(keys_a, keys_b):
@@ -83,7 +83,7 @@ def _keys(contacts: _core.ContactSet) -> np.ndarray:
 def elastic_wrench(
     contacts: _core.ContactSet, method: str, gains: Gains, p_WM: np.ndarray
 ) -> np.ndarray:
-    """Of the project's chain, at rest: torque about M and force (6,), N·m and N."""
+    """Returns the chain's torque about M and force (6,) at rest, N·m and N."""
     clusters = cluster(contacts, method, gains.tolerance_m, gains.delta_m)
     stiffness = np.array([gains.stiffness_N_per_m])
     return _core.penalty_force(
@@ -97,9 +97,9 @@ class Steps:
 
     Attributes:
         moved_m: Largest displacement of a point of the tool, |Δx|.
-        force_m: |ΔF| / k.
-        torque_m: |Δτ| / (k L).
-        steep: Whether what exceeds JUMP is spread over the step, and so no jump.
+        force_m: Change of the force, |ΔF| / k.
+        torque_m: Change of the torque, |Δτ| / (k L).
+        steep: Whether a change above JUMP is spread over the step, and so no jump.
         query_m: (n, 5) columns of QueryChange.
         at: Number of the step in the walk.
     """
@@ -113,23 +113,23 @@ class Steps:
 
     @property
     def ratio(self) -> np.ndarray:
-        """(n, 2) of force and torque to the motion."""
+        """Ratio (n, 2) of force and torque to the motion."""
         return np.stack([self.force_m, self.torque_m], 1) / self.moved_m[:, None]
 
     @property
     def chain_gain(self) -> np.ndarray:
-        """(n,) of the wrench to what it is made of: contacts and pose."""
+        """Ratio (n,) of the wrench to its inputs: contacts and pose."""
         largest = np.maximum(self.moved_m, self.query_m.max(axis=1))
         return np.maximum(self.force_m, self.torque_m) / largest
 
     @property
     def exceeds(self) -> np.ndarray:
-        """(n,) whether force or torque changed by over JUMP times the motion."""
+        """Whether (n,) force or torque changed by over JUMP times the motion."""
         return self.ratio.max(axis=1) > JUMP
 
     @property
     def causes(self) -> np.ndarray:
-        """(n,) the item of CAUSES that would explain each step, whatever its ratio."""
+        """Item of CAUSES (n,) that would explain each step, whatever its ratio."""
         changed = self.query_m > JUMP * self.moved_m[:, None]
         of_query = np.where(changed.any(1), changed.argmax(1), CAUSES.index("clusters"))
         return np.where(self.steep, CAUSES.index("steep"), of_query)
@@ -147,13 +147,13 @@ class _Meter:
         self._unit = np.array([k * scene.size_m] * 3 + [k] * 3)
 
     def read(self, X_WT: np.ndarray, contacts: _core.ContactSet) -> np.ndarray:
-        """(6,) torque / (k L) and force / k, m."""
+        """Returns torque / (k L) and force / k (6,), m."""
         scene, M = self._scene, self._scene.p_TM
         p_WM = X_WT[:3, :3] @ M + X_WT[:3, 3]
         return elastic_wrench(contacts, self._method, scene.gains, p_WM) / self._unit
 
     def is_steep(self, before: Tick, X_WT: np.ndarray) -> bool:
-        """Whether no thirty-second part of a step has half of its change."""
+        """Tells whether no thirty-second part of a step has half of its change."""
         tracker, last = before.tracker, self.read(before.X_WT, before.contacts)
         turn = calc_turn(X_WT[:3, :3] @ before.X_WT[:3, :3].T)
         changes = []
@@ -167,14 +167,14 @@ class _Meter:
 
 
 def _halves(change: np.ndarray) -> np.ndarray:
-    """Lengths (2,) of the force's and the torque's part."""
+    """Returns the lengths (2,) of the force's and the torque's part."""
     return np.array([np.linalg.norm(change[3:]), np.linalg.norm(change[:3])])
 
 
 def measure(
     scene: WalkScene, steps: int, methods: tuple[str, ...] = METHODS, seed: int = 0
 ) -> dict[str, Steps]:
-    """Walks, and returns what each method made of it."""
+    """Walks, and returns the steps through each method."""
     meters = {method: _Meter(scene, method) for method in methods}
     rows: dict[str, list[tuple[float, ...]]] = {method: [] for method in methods}
     common: list[tuple[float, ...]] = []

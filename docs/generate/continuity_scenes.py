@@ -27,7 +27,7 @@ _START_M = 4e-3
 
 
 def _home(p_W: object, R: Rotation, push_W: object = _DOWN) -> Home:
-    """With the tool's origin `_START_M` away from a point."""
+    """Returns a home with the tool's origin `_START_M` away from a point."""
     push = np.asarray(push_W, float)
     X = np.eye(4)
     X[:3, :3] = R.as_matrix()
@@ -36,7 +36,7 @@ def _home(p_W: object, R: Rotation, push_W: object = _DOWN) -> Home:
 
 
 def _tilted(rng: np.random.Generator, tilt_rad: float) -> Rotation:
-    """Any heading, tilted a little about any horizontal axis."""
+    """Returns any heading, tilted a little about any horizontal axis."""
     a = rng.uniform(0, 2 * np.pi)
     tilt = rng.uniform(0, tilt_rad) * np.array([np.cos(a), np.sin(a), 0])
     heading = Rotation.from_rotvec([0, 0, rng.uniform(0, 2 * np.pi)])
@@ -58,7 +58,7 @@ def _scene(
 
 
 def _on_fifty_pieces(tool: str, gains: str, tilt_rad: float) -> WalkScene:
-    """Anywhere on the cut face, well inside its rim."""
+    """Returns a scene anywhere on the cut face, well inside its rim."""
 
     def draw_home(rng: np.random.Generator) -> Home:
         xy = rng.uniform([0.025, 0.02], [0.075, 0.03])
@@ -230,5 +230,5 @@ SCENES: dict[str, Callable[[], WalkScene]] = {
 
 @cache
 def make_scene(key: str) -> WalkScene:
-    """The scene of a key of SCENES."""
+    """Returns the scene of a key of SCENES."""
     return SCENES[key]()

@@ -70,7 +70,7 @@ The word after a scene's name is that of its gains:
 
 
 def row(key: str, method: str, found: Steps) -> list[str]:
-    """The texts of a line of the table."""
+    """Returns the texts of a line of the table."""
     ratio, exceeds, causes = found.ratio, found.exceeds, found.causes
     largest, usual = ratio.max(axis=0), np.quantile(ratio, 0.999, axis=0)
     at_largest = int(ratio.max(axis=1).argmax())

@@ -21,7 +21,7 @@ _LONGEST_APPROACH_M = 40e-3
 
 @dataclass(frozen=True)
 class Home:
-    """Where an episode of a walk begins: a pose without contact, and the way to it.
+    """The start of an episode: a pose without contact, and the way to it.
 
     Attributes:
         X_WT: (4, 4) pose of the tool.
@@ -37,13 +37,13 @@ class WalkScene:
     """A tool and a solid that rests at the world's origin.
 
     Attributes:
-        name: For people.
-        tool: Its pieces.
+        name: Name for people.
+        tool: Pieces of the tool.
         points_T: (n, 3) vertices of the tool's hull, m.
-        solid: Its pieces.
-        gains: Of the contacts.
-        draw_home: A random home.
-        turn_rad: How far the tool turns from it.
+        solid: Pieces of the solid.
+        gains: Gains of the contacts.
+        draw_home: Function that draws a random home.
+        turn_rad: Largest turn of the tool from it.
     """
 
     name: str
@@ -66,7 +66,7 @@ class WalkScene:
 
 
 def calc_rotation(rotvec: np.ndarray) -> np.ndarray:
-    """(3, 3), of Rodrigues' formula."""
+    """Returns the rotation (3, 3) by Rodrigues' formula."""
     angle = float(np.linalg.norm(rotvec))
     x, y, z = rotvec
     S = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -75,14 +75,14 @@ def calc_rotation(rotvec: np.ndarray) -> np.ndarray:
 
 
 def calc_compression(contacts: _core.ContactSet, tolerance_m: float) -> np.ndarray:
-    """Returns how far each contact is inside the tolerance, m."""
+    """Returns the compression of each contact inside the tolerance, m."""
     return np.maximum(0.0, tolerance_m - contacts.distance)
 
 
 def _approach(
     scene: WalkScene, tracker: _core.SceneTracker, home: Home, target_m: float
 ) -> np.ndarray | None:
-    """Comes to a contact compressed by `target_m`; None if it cannot be."""
+    """Moves to a contact compressed by `target_m`; None if that is not possible."""
     tracker.reset()
     X = home.X_WT.copy()
     if len(tracker.query(X)):
@@ -104,9 +104,9 @@ class Tick:
 
     Attributes:
         begins: Whether it is the first of an episode.
-        X_WT: (4, 4) the tool's pose.
-        contacts: There.
-        tracker: That found them, as it is now; copies keep what it knows.
+        X_WT: (4, 4) pose of the tool.
+        contacts: Contacts at that pose.
+        tracker: Tracker that found them, as it is now; copies keep its memory.
     """
 
     begins: bool
@@ -118,9 +118,9 @@ class Tick:
 def walk(scene: WalkScene, steps: int, seed: int = 0) -> Iterator[Tick]:
     """Walks around random poses in contact, EPISODE_STEPS steps around each.
 
-    The walk is steered by the deepest contact, so that this stays between the
-    tolerance and the depth that carries the largest force of a press; it is the same
-    whatever is made of the contacts.
+    The walk is steered by the deepest contact, so that this stays between the tolerance
+    and the depth that carries the largest force of a press; it is the same however the
+    contacts are used.
     """
     rng = np.random.default_rng(seed)
     t, deepest_m = (
@@ -158,11 +158,11 @@ def walk(scene: WalkScene, steps: int, seed: int = 0) -> Iterator[Tick]:
 
 
 def calc_turn(R: np.ndarray) -> np.ndarray:
-    """The rotation vector of a small turn, to first order."""
+    """Returns the rotation vector of a small turn, to first order."""
     return 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
 
 
 def _beyond(x: np.ndarray, leash: float) -> np.ndarray:
-    """What of x is longer than the leash, in lengths of it."""
+    """Returns the part of x beyond the leash, in lengths of it."""
     length = float(np.linalg.norm(x))
     return x / leash * max(0.0, 1 - leash / length) if length > leash else 0 * x

@@ -90,7 +90,7 @@ ON_FACET = 1e-6
 
 
 def find_mesh(name: str) -> Mesh | None:
-    """The mesh of that name, None if it is not beside the repository."""
+    """Returns the mesh of that name, None if it is not beside the repository."""
     if name in GENERATED:
         surface = GENERATED[name]()
         return Mesh.from_arrays(surface.vertices, surface.triangles, name=name)
@@ -102,8 +102,8 @@ def measure(name: str, points: int) -> dict[str, Any]:
     """Cuts a mesh; call it in a process of its own, whose peak memory it tells.
 
     Args:
-        name: of the mesh.
-        points: of its hulls that are looked at.
+        name: Name of the mesh.
+        points: Number of points of its hulls that are checked.
 
     Returns:
         Counts and shares; lengths as shares of the mesh's size, its box's diagonal.
@@ -153,7 +153,7 @@ def find_peak_mib() -> float:
 
 
 def row(result: dict[str, Any]) -> list[str]:
-    """The cells of the table for what `measure` returned."""
+    """Returns the cells of the table for a result of `measure`."""
 
     def share(value: float | None) -> str:
         if value is None:

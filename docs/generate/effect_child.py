@@ -73,14 +73,14 @@ def forbid_effects() -> None:
 
 
 def forbid_others() -> None:
-    """Takes away as much that no scene needs: what memory looks like changes too."""
+    """Takes away as much that no scene needs: the layout of memory changes too."""
     for name in _OTHERS:
         sys.modules[f"drake_haptics.systems.{name}"] = None  # type: ignore[assignment]
         delattr(_core, name)
 
 
 class Recorder:
-    """Stands for a function or a class of the core and notes what is called."""
+    """Stands for a function or a class of the core and notes its calls."""
 
     def __init__(self, original: Any, method: str | None):
         self._original = original

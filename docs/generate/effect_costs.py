@@ -54,12 +54,12 @@ _TIMED_ROUNDS = 5
 
 @dataclass(frozen=True)
 class Costs:
-    """What was counted and timed.
+    """The counts and times of the loops.
 
     Attributes:
         bare: Instructions per tick of the whole loop without effects, counted again.
-        forbidden: The same with what belongs to effects taken away.
-        control: The same with as much else taken away.
+        forbidden: Instructions per tick without all that belongs to effects.
+        control: Instructions per tick without as much that does not.
         loop: Instructions per tick of the whole loop, by its effect.
         core: Instructions per tick in calls of the core, by key of `CORE_CALLS`.
         tick_us: Median tick, by effect, µs; empty where the page keeps its own.
@@ -129,7 +129,7 @@ def measure(has_times: bool) -> Costs:
 
 
 def read_times(page: str) -> dict[str, str]:
-    """Returns the cells of the page that have times, by what is in the first cell."""
+    """Returns the cells of the page that have times, by the first cell."""
     rows = [line[2:-2].split(" | ") for line in read_part(page).splitlines()]
     return {row[0]: row[_TIME] for row in rows if len(row) == len(_HEADER)}
 
@@ -138,8 +138,8 @@ def make_table(costs: Costs, times: Mapping[str, str]) -> str:
     """Returns the table of effects with their costs, as Markdown.
 
     Args:
-        costs: Now.
-        times: Of the page, for costs without.
+        costs: Present costs.
+        times: Times of the page, for costs without.
     """
     base = statistics.median(costs.bare)
     lines = [_row(_HEADER), _row(["---"] * 4 + ["--:"] * 3 + ["---"])]
@@ -171,7 +171,7 @@ def make_table(costs: Costs, times: Mapping[str, str]) -> str:
 
 
 def make_proof(costs: Costs) -> str:
-    """Returns the table that shows what an effect costs that is not named."""
+    """Returns the table that shows the cost of an effect that is not named."""
     lines = [
         _row(["loop", "instructions per tick: least", "most"]),
         _row(["---", "--:", "--:"]),
@@ -189,7 +189,7 @@ def with_figures(page: str, costs: Costs) -> str:
     """Returns the page with these figures.
 
     Raises:
-        ValueError: a mark is missing.
+        ValueError: A mark is missing.
     """
     parts = [make_table(costs, read_times(page)), _PROOF + "\n" + make_proof(costs)]
     return replace_part(page, "\n\n".join(parts) + "\n")

@@ -1,4 +1,4 @@
-"""What docs/effects.md says of each effect, but for its cost.
+"""The rows of docs/effects.md for each effect, but for its cost.
 
 Defaults are read off the dataclasses, so that the page cannot lag behind them.
 """
@@ -24,13 +24,13 @@ class EffectRow:
     """A row of the table.
 
     Attributes:
-        name: For people.
-        key: Of the scene.
+        name: Name for people.
+        key: Key of the scene.
         core: Key of `CORE_CALLS` that it costs; None if it has no call of its own.
-        formula: What it adds to the wrench.
-        source: Where it is from.
-        default: Values where the scene gives none.
-        stability: What it does to the stability of the loop.
+        formula: Formula of its part of the wrench.
+        source: Source of the formula.
+        default: Default values.
+        stability: Effect on the stability of the loop.
     """
 
     name: str
@@ -43,7 +43,7 @@ class EffectRow:
 
 
 def make_rows() -> list[EffectRow]:
-    """Returns all rows: first what is always there, then the effects of a scene."""
+    """Returns all rows: first the laws that always hold, then a scene's effects."""
     contact, device = ContactParameters(), load_device_preset(DeviceParameters().preset)
     shading, friction, braking = (
         ShadingParameters(),

@@ -1,4 +1,4 @@
-"""Runs the tutorials from start to end and writes what they show into them.
+"""Runs the tutorials from start to end and writes their outputs into them.
 
     python docs/generate/execute_tutorials.py [NOTEBOOK ...]
 
@@ -28,9 +28,9 @@ def calc_code_digest(notebook: nbformat.NotebookNode) -> str:
 
 
 def execute(notebook: nbformat.NotebookNode) -> None:
-    """Runs all cells in a new kernel and puts what they show into the notebook.
+    """Runs all cells in a new kernel and puts their outputs into the notebook.
 
-    Of which code the outputs are is noted in its metadata, as `code_digest`.
+    The metadata has a digest of the code of these outputs, as `code_digest`.
 
     Raises:
         nbclient.exceptions.CellExecutionError: A cell raised.
@@ -56,7 +56,7 @@ def execute(notebook: nbformat.NotebookNode) -> None:
 
 
 def _is_of_fonts(output: nbformat.NotebookNode) -> bool:
-    """Returns whether Graphviz complains of how this machine's fonts are set up."""
+    """Tells whether Graphviz complains of this machine's fonts."""
     is_stderr = output.output_type == "stream" and output.name == "stderr"
     return is_stderr and output.text.startswith("Fontconfig")
 

@@ -47,12 +47,12 @@ BLOCKS = {
 
 @dataclass(frozen=True)
 class Pair:
-    """What is touched with what.
+    """A tool and the object that it touches.
 
     Attributes:
-        name: Of the row.
-        make: The tool and the object.
-        touch: Gives random poses of the tool.
+        name: Name of the row.
+        make: Function that makes the tool and the object.
+        touch: Function that returns random poses of the tool.
         moves: Whether the object moves too.
     """
 
@@ -67,12 +67,13 @@ class Row:
     """The measured states of one pair and one method.
 
     Attributes:
-        pair: Its name.
-        method: Of clustering.
-        num_states: Random contact states.
-        num_changing: Those whose features change within the differences' reach.
-        num_unsettled: Those with a part whose differences depend on the step.
-        errors: Of each part, one for each state that is left.
+        pair: Name of the pair.
+        method: Method of clustering.
+        num_states: Number of random contact states.
+        num_changing: Number of those whose features change within the differences'
+            reach.
+        num_unsettled: Number of those with a part whose differences depend on the step.
+        errors: Errors of each part, one for each state that is left.
     """
 
     pair: str
@@ -86,7 +87,7 @@ class Row:
 
 
 def shipped(tool: str, solid: str) -> Callable[[], tuple]:
-    """A pair of shipped meshes."""
+    """Returns a function that makes a pair of shipped meshes."""
     return lambda: tuple(
         decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core
         for name in (tool, solid)
@@ -94,7 +95,7 @@ def shipped(tool: str, solid: str) -> Callable[[], tuple]:
 
 
 def box_and_cut_plate() -> tuple[_core.ConvexPieces, _core.ConvexPieces]:
-    """A box, and a plate whose top, z = 0, is cut into 50 pieces."""
+    """Returns a box, and a plate whose top, z = 0, is cut into 50 pieces."""
     mesh = cell_mesh(product(range(10), range(5), (0,)), 0.01)
     corners = mesh.vertices[mesh.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -110,7 +111,7 @@ def box_and_cut_plate() -> tuple[_core.ConvexPieces, _core.ConvexPieces]:
 
 
 def nearly_level(rng: np.random.Generator, *_: object) -> np.ndarray:
-    """A box on the plate, tilted by 3° at most: faces lie nearly flush."""
+    """Returns a pose of the box tilted by 3° at most: faces lie nearly flush."""
     turn = Rotation.from_rotvec([*np.deg2rad(rng.uniform(-3, 3, 2)), rng.uniform(0, 7)])
     x, y, z, w = turn.as_quat()
     place = [rng.uniform(0.03, 0.07), rng.uniform(0.02, 0.03), rng.uniform(-T, T)]
@@ -150,7 +151,7 @@ def measure(pair: Pair, method: str, count: int) -> Row:
 
 
 def _of_core(state: State, moves: bool) -> dict[str, float]:
-    """Errors of the wrench model's parts, through the core alone."""
+    """Returns errors of the wrench model's parts, through the core alone."""
     x = state.x[: 26 if moves else 13]
 
     def evaluate(x: np.ndarray) -> np.ndarray:
@@ -162,7 +163,7 @@ def _of_core(state: State, moves: bool) -> dict[str, float]:
 
 
 def _of_drake(state: State, moves: bool) -> dict[str, float]:
-    """The largest of all parts through the systems, converted to AutoDiffXd."""
+    """Returns the largest errors through the systems, converted to AutoDiffXd."""
     chain = ContactChain(state, (moves,))
     x = chain.variables(state)
     errors = derivative_errors(
@@ -193,7 +194,7 @@ TITLES = ("pair", "clusters", "states", "left out", *BLOCKS, "as a diagram")
 
 
 def cells(row: Row) -> list[str]:
-    """The texts of a line."""
+    """Returns the texts of a line."""
     changing, unsettled = (
         f"{100 * n / row.num_states:.0f} %"
         for n in (row.num_changing, row.num_unsettled)

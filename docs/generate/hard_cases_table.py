@@ -30,14 +30,14 @@ HEADER = f"| case | poses | local | {COLUMNS} |\n|---|{RULES}\n"
 
 
 def cells(score: Score) -> list[str]:
-    """Wrong, gross and worst error of a library."""
+    """Returns wrong, gross and worst error of a library."""
     if not score.asked:
         return ["not asked", "", ""]
     return [str(score.wrong), str(score.gross), f"{score.worst:.0e}"]
 
 
 def row(name: str, scores: dict[str, Score]) -> str:
-    """A case's line of the table."""
+    """Returns a case's line of the table."""
     coal = scores["coal"]
     local = str(scores["tracked"].not_global)
     line = [name, str(coal.asked + coal.refused), local]
@@ -47,7 +47,7 @@ def row(name: str, scores: dict[str, Score]) -> str:
 
 
 def cases_in(text: str) -> list[str]:
-    """The names of the cases in the document's table."""
+    """Returns the names of the cases in the document's table."""
     table = text.split(START)[1].split(END)[0]
     return [line.split("|")[1].strip() for line in table.splitlines()[2:]]
 

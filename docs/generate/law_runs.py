@@ -46,7 +46,7 @@ class Loop(Protocol):
         """Returns X_WT (7,), contact's wrench (6,) on it, the hand's force (3,)."""
 
     def calc_work(self) -> np.ndarray:
-        """Returns what contact had given and held at each tick (n,), J."""
+        """Returns the energy that contact had given and held at each tick (n,), J."""
 
 
 class Penalty:
@@ -70,7 +70,7 @@ class Penalty:
         return tick.state[:7], tick.F_contact_W, -tick.F_coupling_W[3:]
 
     def calc_work(self) -> np.ndarray:
-        """Returns what contact had given and held at each tick (n,), J."""
+        """Returns the energy that contact had given and held at each tick (n,), J."""
         F = np.array([tick.F_contact_W for tick in self._ticks])
         V = np.array([tick.state[7:] for tick in self._ticks])
         # The trapezoidal rule is exact for a spring.
@@ -102,7 +102,7 @@ class Constraint:
         return self._loop.q_WT, F, result.F_Ho_W_commanded[3:]
 
     def calc_work(self) -> np.ndarray:
-        """Returns what contact had given at each tick (n,), J: it holds nothing."""
+        """Returns the energy that contact had given at each tick (n,), J."""
         return np.cumsum([0.0, *self._loop.work_J])
 
 
@@ -111,7 +111,7 @@ LAWS: dict[str, Callable[..., Loop]] = {"penalty": Penalty, "constraint": Constr
 
 @dataclass
 class Run:
-    """What a tool did while a handle moved, tick by tick."""
+    """The motion of a tool while a handle moved, tick by tick."""
 
     phases: np.ndarray
     q_WT: np.ndarray  # (n, 7)
@@ -145,7 +145,7 @@ def run_handle(loop: Loop, press: Press, held: int = 0) -> Run:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A press on a solid that a tool has room for where it starts."""
+    """A press on a solid, and a tool that has room where it starts."""
 
     solid: str
     tool: PressTool
@@ -161,9 +161,9 @@ def list_places(
 
     Args:
         motion: One of press_rig.MOTIONS.
-        points: How many on each solid; a tool may have no room at some.
-        solids: Among press_cells.SHIPPED.
-        steady: Press with STEADY_N, not with the largest force.
+        points: Number of points on each solid; a tool may have no room at some.
+        solids: Names among press_cells.SHIPPED.
+        steady: Whether to press with STEADY_N, not with the largest force.
     """
     tools = make_tools()
     for name in solids:

@@ -1,4 +1,4 @@
-"""Tabulates what the two laws of contact do with the same tools, solids and handles.
+"""Tabulates how the two laws of contact treat the same tools, solids and handles.
 
 python docs/generate/law_table.py --points 4
 python docs/generate/law_table.py --write
@@ -59,7 +59,7 @@ def measure_rest(law: str, places: Sequence[Place]) -> np.ndarray:
 
 
 def calc_tremor(forces: np.ndarray, band_Hz: tuple[float, float]) -> float:
-    """Returns the rms (N) of what of forces (n, 3) is in a band."""
+    """Returns the rms (N) of the part of forces (n, 3) in a band."""
     spectrum = np.fft.rfft(forces - forces.mean(axis=0), axis=0) / len(forces)
     hertz = np.fft.rfftfreq(len(forces), PERIOD_S)
     felt = spectrum[(band_Hz[0] <= hertz) & (hertz <= band_Hz[1])]
@@ -68,7 +68,7 @@ def calc_tremor(forces: np.ndarray, band_Hz: tuple[float, float]) -> float:
 
 @dataclass
 class Faults:
-    """Presses of one motion: how many met, and what went wrong in them."""
+    """Presses of one motion: how many met, and the faults in them."""
 
     met: int = 0
     lost: int = 0
@@ -121,7 +121,7 @@ def insert_peg(
 
     Args:
         law: One of LAWS.
-        play_m: Of the peg on each side.
+        play_m: Play of the peg on each side, m.
         range_m: The law's tolerance or skin. Defaults to the law's own.
 
     Returns:
@@ -154,7 +154,7 @@ def find_least_play(law: str, fitted: bool) -> str:
 
 
 def measure(law: str, points: int, solids: Sequence[str]) -> dict[str, str]:
-    """Returns what a law does, by what was measured."""
+    """Returns the figures of a law, by the name of the measurement."""
     cells: dict[str, str] = {}
 
     def places(motion: str, *, steady: bool = False) -> list[Place]:

@@ -62,7 +62,7 @@ def measure(problem: SceneProblem, share: float, cell: float) -> list[float]:
 
 
 def rows() -> Iterator[list[str]]:
-    """The table's rows, the first one its head."""
+    """Yields the table's rows, the first one its head."""
     yield HEAD
     makers = scene_makers(motions=1)
     for name in SCENES:

@@ -47,7 +47,7 @@ TITLES = (
 
 
 def rows() -> Iterator[tuple[str, ...]]:
-    """A line for each scene, of all its states together."""
+    """Yields a line for each scene, of all its states together."""
     yield TITLES
     for name, *settings in SCENES:
         loop = build_scene(name, *settings)
@@ -71,7 +71,7 @@ def rows() -> Iterator[tuple[str, ...]]:
 def _tell_errors(found: list[LoopGradients], part: slice) -> list[str]:
     """Returns quantiles of the errors of some rows, in all states.
 
-    Of the entries that are not zero; the largest error is that of all.
+    They are of the entries that are not zero; the largest error is that of all.
     """
     errors, expected = (
         np.concatenate([values(gradients)[part].ravel() for gradients in found])
@@ -84,7 +84,7 @@ def _tell_errors(found: list[LoopGradients], part: slice) -> list[str]:
 
 
 def with_table(page: str) -> str:
-    """Returns the page with the table of now between its marks."""
+    """Returns the page with the present table between its marks."""
     table = to_markdown(rows())
     print(table)
     before, _, after = page.split(MARK)

@@ -65,7 +65,7 @@ def find_core_links() -> Links:
 
 
 def drop_implied(links: Mapping[str, Iterable[str]]) -> set[tuple[str, str]]:
-    """Returns the links, as pairs, that no way over other folders implies."""
+    """Returns the links, as pairs, that no path over other folders implies."""
     below: Links = {}
     for folder in TopologicalSorter(links).static_order():
         direct = set(links.get(folder, ()))

@@ -2,7 +2,7 @@
 
 python docs/generate/make_concept_pictures.py
 
-Each is drawn from what the package answers, not by hand.
+Each is drawn from the package's own answers, not by hand.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _save(name: str, draw: Callable[[np.ndarray], None], panels: int = 2) -> Non
 
 
 def draw_pieces(axes: np.ndarray) -> None:
-    """The cup, cut by the plane y = 0: the mesh's outline, and the pieces' hulls."""
+    """Draws the cup, cut by the plane y = 0: the mesh's outline and the hulls."""
     cup = decompose(load_mesh(_MESHES / "cup.obj"))
     for index, piece in enumerate(cup.pieces):
         for facet, original in zip(piece.facets, piece.facet_original, strict=True):
@@ -97,7 +97,7 @@ def _cut(polygon: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
 
 
 def draw_depth(axes: np.ndarray) -> None:
-    """A blade goes down through a plate of 6 mm: both depths, and their ways out."""
+    """Draws a blade through a plate of 6 mm: both depths, and their ways out."""
     plate = ConvexPolytope(
         [[x, y, z] for x in (-40, 40) for y in (-40, 40) for z in (-6, 0)]
     )
@@ -151,7 +151,7 @@ def _draw_way_out(ax: Axes, contact: object, color: object, name: str) -> None:
 
 
 def draw_near(axes: np.ndarray) -> None:
-    """A pen comes down on a block: force over distance, and the tolerance."""
+    """Draws a pen coming down on a block: force over distance, and the tolerance."""
     pen = decompose(load_mesh(_MESHES / "pen.obj"))
     block = decompose(load_mesh(_MESHES / "block.obj"))
     scene = SceneTracker(pen, [block], tolerance=_TOLERANCE_M)
@@ -190,7 +190,7 @@ def draw_near(axes: np.ndarray) -> None:
 
 
 def draw_clusters(axes: np.ndarray) -> None:
-    """The spoon scrapes the cup: the force by shared stiffness and by the octree."""
+    """Draws the force of the spoon on the cup by shared stiffness and by the octree."""
     for clustering, size_m, color in (
         ("octree", 1e-3, PENETRATING_CONTACT),
         ("shared", None, FORCE_INK),
@@ -223,7 +223,7 @@ def draw_clusters(axes: np.ndarray) -> None:
 
 
 def draw_gate(axes: np.ndarray) -> None:
-    """A gate is enabled, asked for too much, and left alone: what it shows."""
+    """Draws a gate's force when enabled, asked for too much, and left alone."""
     gate = LocalGate(max_force_N=_MAX_FORCE_N, max_torque_Nm=0.2, ttl_s=0.05)
     X_BH, V_BH = np.array([1.0, 0, 0, 0, 0, 0, 0]), np.zeros(6)
     time_ms, asked, shown = np.arange(0, 800), [], []

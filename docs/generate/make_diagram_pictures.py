@@ -30,7 +30,7 @@ _EDGE = re.compile(r"^(s\d+):(y\d+):e -> (s\d+):(u\d+):w$", re.M)
 
 
 def make_graph(scene: str) -> str:
-    """Returns what Drake tells of the loop of a scene, in Graphviz's language.
+    """Returns Drake's picture of the loop of a scene, in Graphviz's language.
 
     The diagram's own outputs, one for all that there is to see, are left out.
     """

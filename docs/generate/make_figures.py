@@ -37,7 +37,7 @@ class Figures:
     Attributes:
         page: The file, in the repository.
         commands: Arguments of this Python, run in the repository one after the other.
-        minutes: What it takes, some minutes on two cores.
+        minutes: Duration, some minutes on two cores.
         timed: Whether times are among the figures: nothing else may run.
     """
 

@@ -1,11 +1,11 @@
 """Makes the README's moving picture: `python docs/generate/make_moving_picture.py`.
 
-Runs the cup and the spoon as `drake-haptics run cup_spoon` does, and takes down what
-its page is told while nobody draws it. Then the page is shown again, picture by
-picture, to a Chromium without a window (needs what the tests need), which draws some
-two a second: too few to film a run. So the figures, rate and lateness are those of the
-run, the film plays as fast as the run went, and it ends where it began: it lasts one
-round of the hand.
+Runs the cup and the spoon as `drake-haptics run cup_spoon` does, and records what its
+page is told while nobody draws it. Then the page is shown again, picture by picture, to
+a Chromium without a window (needs what the tests need), which draws some two a second:
+too few to film a run. So the figures, rate and lateness are those of the run, the film
+plays as fast as the run went, and it ends where it began: it lasts one round of the
+hand.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def _record(executable: str, begin_s: float, end_s: float) -> PageRecording:
-    """Returns what a run told its page.
+    """Returns the messages of a run to its page.
 
     Raises:
         SystemExit: It did not keep to the clock.
@@ -93,7 +93,7 @@ def _open(browser: HeadlessBrowser, url: str) -> Page:
 
 
 def _show(page: Page, time_s: float) -> None:
-    """Waits until the page shows a time: what it is sent faster, it may miss."""
+    """Waits until the page shows a time: it may miss messages that come faster."""
     # Rounded as the page does it: where two are as near, Python takes the even one.
     page.wait_for(
         f"document.getElementById('time').textContent == ({time_s!r}).toFixed(1) + ' s'"

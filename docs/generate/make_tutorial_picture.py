@@ -26,7 +26,7 @@ _FLAGS = (
 
 
 def run_tutorial() -> dict[str, Any]:
-    """Returns the names that the code of the tutorial leaves behind."""
+    """Returns the names that the code of the tutorial defines."""
     matplotlib.use("agg")
     notebook = nbformat.read(FOLDER / "2-felt-force.ipynb", as_version=4)
     names: dict[str, Any] = {}

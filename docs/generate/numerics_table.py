@@ -1,4 +1,4 @@
-"""Sums up, for docs/verification/numerics.md, what the pages on hard cases measured.
+"""Sums up, for docs/verification/numerics.md, the figures of the pages on hard cases.
 
 python docs/generate/numerics_table.py --write
 
@@ -28,11 +28,11 @@ _TESSELLATED = "tessellated sphere at 40 orientations"
 
 
 def read_table(page: str, first_heading: str) -> list[dict[str, str]]:
-    """Returns the rows of the table of a page whose first heading that is.
+    """Returns the rows of the table of a page that begins with a heading.
 
     Args:
         page: Name of the file.
-        first_heading: Of the table's first column.
+        first_heading: Heading of the table's first column.
 
     Raises:
         ValueError: There is no such table.
@@ -57,7 +57,7 @@ def _name_apart(head: list[str]) -> list[str]:
 
 
 def _total(rows: list[dict[str, str]], column: str) -> int:
-    """Sums a column, without what was not asked."""
+    """Sums a column, without the cells that were not measured."""
     return sum(int(row[column]) for row in rows if row.get(column, "").isdigit())
 
 
@@ -67,7 +67,7 @@ def _percent(rows: list[dict[str, str]], columns: list[str]) -> str:
 
 
 def summary_rows() -> Iterator[list[str]]:
-    """The table's rows, the first one its head."""
+    """Yields the table's rows, the first one its head."""
     yield HEAD
     cases = read_table("verification/hard-cases.md", "case")
     yield [

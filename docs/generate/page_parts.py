@@ -16,7 +16,7 @@ def to_markdown(rows: Iterable[Sequence[str]]) -> str:
 
 
 def find_part(page: str, name: str) -> slice:
-    """Returns where in a page the part of that name is.
+    """Returns the place of a part in a page, by the part's name.
 
     Raises:
         ValueError: A mark is missing.
@@ -51,7 +51,7 @@ def make_parser(description: str | None, *pages: Path) -> argparse.ArgumentParse
 
     Args:
         description: The program's docstring.
-        *pages: What it writes.
+        *pages: Pages that it writes.
     """
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter

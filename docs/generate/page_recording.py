@@ -1,4 +1,4 @@
-"""Takes down what a run tells its page and its Meshcat, each with its time."""
+"""Records the messages of a run to its page and its Meshcat, each with its time."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from websockets.sync.client import ClientConnection, connect
 
 @dataclass
 class PageRecording:
-    """What was told, oldest first; times are seconds of one clock.
+    """The messages, oldest first; times are seconds of one clock.
 
     Attributes:
-        lasting: What a page is told when it comes, by name.
+        lasting: Messages that a page gets when it connects, by name.
         frames: Times and frames.
         meshcat: Times and messages to Meshcat's page, at first all of the scene.
     """
@@ -28,7 +28,7 @@ class PageRecording:
     meshcat: list[tuple[float, bytes]] = field(default_factory=list)
 
     def find_clock_time(self, time_s: float) -> float:
-        """Returns when the first frame came that is not before a simulated time."""
+        """Returns the time of the first frame that is not before a simulated time."""
         return next(at for at, frame in self.frames if frame["time_s"] >= time_s)
 
     def calc_real_time_rate(self, begin_s: float) -> float:

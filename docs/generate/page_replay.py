@@ -1,4 +1,4 @@
-"""Shows a recorded page again, as slowly as somebody likes to look at it."""
+"""Shows a recorded page again, as slowly as somebody wants to look at it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class PageReplay:
     """The page and the Meshcat of a recording, at the time that they are set to."""
 
     def __init__(self, recording: PageRecording):
-        """Serves both, at the recording's begin."""
+        """Serves both, at the recording's start."""
         self._frames, self._meshcat = list(recording.frames), list(recording.meshcat)
         self._time_s = 0.0
         # What Meshcat's page was told so far, and by whom it is looked at.
@@ -70,7 +70,7 @@ class PageReplay:
         self._loop.close()
 
     def advance_to(self, clock_s: float) -> float:
-        """Tells pages all that was told up to a time of the recording's clock.
+        """Sends pages everything up to a time of the recording's clock.
 
         Returns:
             The simulated time that the page is to show, s.
@@ -89,7 +89,7 @@ class PageReplay:
         return self._time_s
 
     async def _view(self, viewer: ServerConnection) -> None:
-        """Tells a Meshcat's page what it has missed; hears nothing."""
+        """Sends a Meshcat's page the messages that it has missed; hears nothing."""
         for message in self._drawn:
             await viewer.send(message)
         self._viewers.add(viewer)
@@ -97,12 +97,12 @@ class PageReplay:
             pass
 
     def _call(self, work: Any) -> Any:
-        """Returns what a coroutine of the servers' thread returns."""
+        """Runs a coroutine in the servers' thread, and returns its result."""
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
 
 async def _ignore(_: dict[str, Any]) -> None:
-    """Passes over what the page asks for."""
+    """Ignores a request of the page."""
 
 
 async def _open(view: Any, listener: Any) -> Any:

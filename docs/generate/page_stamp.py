@@ -37,7 +37,7 @@ def make_stamp(generator: str | Path, commit: str) -> str:
 
     Args:
         generator: The program that makes the figures, in the repository.
-        commit: What `describe_commit` says.
+        commit: Text of `describe_commit`.
     """
     return _LINE.format(Path(generator).resolve().relative_to(ROOT).as_posix(), commit)
 
@@ -52,7 +52,7 @@ def with_stamp(text: str, stamp: str) -> str:
 
 
 def write_page(page: Path, text: str, generator: str | Path) -> None:
-    """Writes a page with figures, and when they were made.
+    """Writes a page with figures, and the time when they were made.
 
     Args:
         page: The file.
@@ -64,7 +64,7 @@ def write_page(page: Path, text: str, generator: str | Path) -> None:
 
 
 def amend_page(page: Path, text: str, generator: str | Path, what: str) -> None:
-    """Writes a page some of whose figures were made again, and says which and when.
+    """Writes a page with some figures made again, and says which and when.
 
     Args:
         page: The file.
@@ -77,12 +77,12 @@ def amend_page(page: Path, text: str, generator: str | Path, what: str) -> None:
 
 
 def with_amendment(text: str, stamp: str, what: str) -> str:
-    """Returns a page whose stamp says what was made again at the commit of another.
+    """Returns a page whose stamp says which figures were made again at another commit.
 
     Args:
-        text: Of the page, with a stamp of the same program.
-        stamp: What the line would say of all figures.
-        what: The figures that are meant, once.
+        text: Text of the page, with a stamp of the same program.
+        stamp: Line as it would be for all figures.
+        what: Name of the figures that are meant, once.
     """
     name, _, now = stamp.partition(": made ")
     [old] = [x for x in text.rstrip().split("\n") if x.startswith(f"{name}:")]

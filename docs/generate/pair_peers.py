@@ -36,7 +36,7 @@ _DRAKE_LARGEST = 1e5
 
 
 def ours(A: np.ndarray, B: np.ndarray, depth: Depth = "tracked") -> Query:
-    """A pair of this package, which remembers its last answer."""
+    """Returns a pair of this package, which remembers its last answer."""
     pair = ConvexPair(ConvexPolytope(A), ConvexPolytope(B), depth)
 
     def query(X_WA: np.ndarray, X_WB: np.ndarray) -> Answer:
@@ -47,7 +47,7 @@ def ours(A: np.ndarray, B: np.ndarray, depth: Depth = "tracked") -> Query:
 
 
 def _coal_hull(points: np.ndarray) -> coal.Convex:
-    """A hull from qhull's triangles; a flat polygon as a fan with two sides.
+    """Returns a hull of qhull's triangles; of a flat polygon, a fan with two sides.
 
     Coal's own call of qhull ends the process where qhull finds the points flat.
     """
@@ -69,7 +69,7 @@ def _coal_hull(points: np.ndarray) -> coal.Convex:
 
 
 def with_coal(A: np.ndarray, B: np.ndarray) -> Query:
-    """Coal's signed distance, asked afresh at each pose."""
+    """Returns coal's signed distance, asked afresh at each pose."""
     shape_A, shape_B = _coal_hull(A), _coal_hull(B)
 
     def query(X_WA: np.ndarray, X_WB: np.ndarray) -> Answer:
@@ -87,7 +87,7 @@ def with_coal(A: np.ndarray, B: np.ndarray) -> Query:
 
 
 def with_drake(A: np.ndarray, B: np.ndarray) -> Query:
-    """Drake's SceneGraph: Convex against Convex."""
+    """Returns the query of Drake's SceneGraph: Convex against Convex."""
     if max(np.abs(A).max(), np.abs(B).max()) > _DRAKE_LARGEST:
         raise ValueError("Drake's query does not return on bodies of this size")
     scene_graph = SceneGraph()

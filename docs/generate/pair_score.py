@@ -17,12 +17,13 @@ GROSS_SHARE = 1e-3
 
 @dataclass(frozen=True)
 class Library:
-    """How a library is asked.
+    """A library and the way to ask it.
 
     Attributes:
-        make: gives a query of two vertex sets; raises for bodies it cannot hold.
-        is_tracked: a depth need only be a proven local minimum.
-        is_warm: the query remembers; each pose is asked in turn and once more afresh.
+        make: Returns a query of two vertex sets; raises for bodies it cannot hold.
+        is_tracked: Whether a depth need only be a proven local minimum.
+        is_warm: Whether the query remembers; each pose is asked in turn and once more
+            afresh.
     """
 
     make: Callable[[np.ndarray, np.ndarray], Query]
@@ -32,16 +33,18 @@ class Library:
 
 @dataclass
 class Score:
-    """What came of all questions of a case to one library.
+    """The answers of one library to all questions of a case.
 
     Attributes:
-        asked: number of questions.
-        refused: questions about bodies that the library cannot hold; not asked.
-        wrong: answers with any complaint.
-        gross: answers that are not finite, exceptions, or grossly wrong distances.
-        not_global: right answers that are a local but not the exact depth.
-        worst: largest error of a finite distance, as a share of the size.
-        complaints: the first ones, in words.
+        asked: Number of questions.
+        refused: Number of questions about bodies that the library cannot hold; not
+            asked.
+        wrong: Number of answers with any complaint.
+        gross: Number of answers that are not finite, exceptions, or grossly wrong
+            distances.
+        not_global: Number of right answers that are a local but not the exact depth.
+        worst: Largest error of a finite distance, as a share of the size.
+        complaints: First complaints, in words.
     """
 
     asked: int = 0
@@ -69,7 +72,7 @@ class Score:
 def ask(
     query: Query, exact: ExactPair, k: int, passage: Passage, tracked: bool
 ) -> Verdict:
-    """The verdict on a library's answer at pose k; on its exception, if it raises."""
+    """Returns the verdict on a library's answer at pose k, or on its exception."""
     try:
         answer = query(passage.X_WA[k], passage.X_WB[k])
     except (RuntimeError, ValueError) as error:

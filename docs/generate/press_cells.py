@@ -1,4 +1,4 @@
-"""The cells of the press table: many presses on one solid, and what became of them."""
+"""The cells of the press table: many presses on one solid, and their verdicts."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Cell:
 
     Attributes:
         solid: One of SHIPPED, or a file's name among the real meshes.
-        tools: Their names; point i is met by tool i modulo their number.
+        tools: Names of the tools; point i is met by tool i modulo their number.
         motion: One of press_rig.MOTIONS.
         gains: One of press_rig.GAINS.
-        seed: Of the random points.
+        seed: Seed of the random points.
     """
 
     solid: str
@@ -53,13 +53,13 @@ class Column:
 
 
 def find_mesh(name: str) -> Path | None:
-    """The file of a solid by name; None if it is not there."""
+    """Returns the file of a solid by name; None if it is not there."""
     path = MODELS / f"{name}.obj" if name in SHIPPED else REAL_MESHES / name
     return path if path.exists() else None
 
 
 def makes_energy(verdict: Verdict, gains: Gains) -> bool:
-    """Whether the contact gave more than the largest force stores in its spring."""
+    """Tells whether contact gave more than the largest force stores in its spring."""
     return verdict.made_J > 0.5 * LARGEST_FORCE_N**2 / gains.stiffness_N_per_m
 
 
@@ -75,7 +75,7 @@ def run_points(cell: Cell, points: Iterable[int]) -> Iterator[tuple[int, Verdict
 
 
 def complaints(verdict: Verdict, gains: Gains) -> str:
-    """Why a press failed, or nothing."""
+    """Returns why a press failed, or ""."""
     found = []
     if verdict.lost_tick >= 0:
         found.append(f"lost at tick {verdict.lost_tick}")
@@ -105,7 +105,7 @@ def _worst(value: Callable[[Verdict], float], digits: int) -> Callable[..., str]
 
 
 def _per_thousand(name: str) -> Callable[..., str]:
-    """Jumps of a kind in a thousand ticks of contact."""
+    """Returns a text of the jumps of a kind in a thousand ticks of contact."""
 
     def text(met: list[Verdict], gains: Gains) -> str:
         ticks = sum(v.jumps.ticks for v in met)
@@ -132,7 +132,7 @@ COLUMNS = (
 
 
 def row(cell: Cell, verdicts: Iterable[Verdict]) -> list[str]:
-    """A line of the table: what was done, and a text for each of COLUMNS."""
+    """Returns a line of the table: the presses, and a text for each of COLUMNS."""
     met = [v for v in verdicts if not v.skipped]
     gains = GAINS[cell.gains]
     return [

@@ -87,10 +87,10 @@ def write_presses(
     """Writes the page; gains that are not among the rows keep those that they had.
 
     Args:
-        rows: Of press_cells.row.
-        points: Of each row.
-        tools: That met them in turn.
-        seed: Of the points.
+        rows: Rows of press_cells.row.
+        points: Number of points of each row.
+        tools: Tools that met them in turn.
+        seed: Seed of the points.
     """
     pressed = {row[2] for row in rows}
     kept = [list(row.values()) for row in read_rows() if row["gains"] not in pressed]

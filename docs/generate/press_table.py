@@ -1,4 +1,4 @@
-"""Presses, jabs and slides tools at many points of many solids; tells what became.
+"""Presses, jabs and slides tools at many points of many solids; tabulates verdicts.
 
 python docs/generate/press_table.py --points 40 --gains sinking
 python docs/generate/press_table.py --points 1000 --jobs 3 --write

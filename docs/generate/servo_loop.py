@@ -24,11 +24,11 @@ FOREVER_S = 1e9
 
 @dataclass(frozen=True)
 class Scheme:
-    """Who answers the device.
+    """A way to answer the device.
 
     Attributes:
-        name: In tables.
-        servo_hz: Rate of the device and of who answers it.
+        name: Name in tables.
+        servo_hz: Rate of the device and of its answers.
         slopes: Whether the wrench has its slopes.
         hold_s: Time after which a wrench is released, s.
         brakes: Whether a wrench that comes back is damped.
@@ -54,14 +54,14 @@ SCHEMES = (HELD, LOCAL, SERVO, FAST_SERVO)
 
 @dataclass(frozen=True)
 class Run:
-    """What happened, one entry per sample of the device.
+    """The course of a run, one entry per sample of the device.
 
     Attributes:
-        time_s: Of the sample, s.
-        x_m: The handle.
-        force_N: Shown.
-        age_s: Of the loop's last tick, s.
-        delay_s: From a sample to the force that answers it, s.
+        time_s: Time of the sample, s.
+        x_m: Position of the handle.
+        force_N: Force that is shown.
+        age_s: Age of the loop's last tick, s.
+        delay_s: Time from a sample to the force that answers it, s.
     """
 
     time_s: np.ndarray
@@ -102,14 +102,14 @@ def simulate(
     pushes, and the hand presses on it.
 
     Args:
-        scheme: Who answers.
-        stiffness: Of the spring, N/m.
+        scheme: Way to answer.
+        stiffness: Stiffness of the spring, N/m.
         loop_hz: Rate of the loop that computes wrenches.
-        stall_s: How long it stalls, once per `stall_period_s`.
+        stall_s: Length of a stall, once per `stall_period_s`.
         hand: Mass, damping and stiffness.
         delay: Samples of the device until an answer is shown.
-        stall_period_s: From stall to stall, s.
-        duration_s: Of the run, s.
+        stall_period_s: Time from stall to stall, s.
+        duration_s: Duration of the run, s.
     """
     dt = 1.0 / scheme.servo_hz
     flow, rest = make_flow(hand, dt)

@@ -1,4 +1,4 @@
-"""Tabulates and draws what a servo does for a device: at stalls, and at stiff walls.
+"""Tabulates and draws the effect of a servo on a device: at stalls and at stiff walls.
 
 python docs/generate/servo_table.py --write
 """
@@ -48,7 +48,7 @@ WILD_M = 0.02
 
 
 def part_rows() -> Iterator[list[str]]:
-    """What the parts of the law do, without the link's sample of delay."""
+    """Yields the effects of the law's parts, without the link's sample of delay."""
     yield ["scheme", "K, N/m", "stalls of", "motion at the end", "farthest"]
     for scheme, K, stall_s in [
         (HELD, 500, 0.0),
@@ -71,7 +71,7 @@ def part_rows() -> Iterator[list[str]]:
 
 
 def stall_rows() -> Iterator[list[str]]:
-    """Buzz and stale force at the slowest loop and the stall that was measured."""
+    """Yields buzz and stale force at the slowest loop and the measured stall."""
     yield ["held by", "K, N/m", *(scheme.name for scheme in SCHEMES)]
     for name, hand in HANDS.items():
         for K in STIFFNESSES:
@@ -84,7 +84,7 @@ def _cell(scheme: Scheme, K: float, hand: tuple[float, float, float] | None) -> 
 
 
 def wall_rows() -> Iterator[list[str]]:
-    """The stiffest wall that is stable, in theory, linearized and simulated."""
+    """Yields the stiffest wall that is stable, in theory, linearized and simulated."""
     yield ["contact", "theory", "linearization", "simulated servo", "loop in Drake"]
     for solver in SOLVERS:
         judges = [
@@ -113,7 +113,7 @@ TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
 
 
 def with_tables(page: str) -> str:
-    """Returns the page with the tables of now."""
+    """Returns the page with the present tables."""
     for name, rows in {**TABLES, "walls": wall_rows}.items():
         table = to_markdown(rows())
         print(table)

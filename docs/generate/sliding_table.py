@@ -1,4 +1,4 @@
-"""Tabulates what a tool feels that slides over a face in pieces.
+"""Tabulates the force on a tool that slides over a face in pieces.
 
 python docs/generate/sliding_table.py --write
 """
@@ -65,7 +65,7 @@ Tolerance {tolerance:g} mm, stiffness {stiffness:g} N/m, 0.1 m/s.
 
 @dataclass(frozen=True)
 class Slide:
-    """What a tool feels at one height.
+    """The force on a tool at one height.
 
     Attributes:
         face: Name of the face.
@@ -74,7 +74,7 @@ class Slide:
         distance_m: Largest error of the nearest contact's distance.
         normal: Largest error of any component of any contact's normal.
         shared: Ripple of the normal force where contacts share stiffness.
-        octree: The same through the octree, for each of `DELTAS_M`.
+        octree: Ripple of the normal force through the octree, for each of `DELTAS_M`.
         sideways: Largest tangential force over the mean normal force.
     """
 

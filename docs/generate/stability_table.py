@@ -31,7 +31,7 @@ Results = dict[str, SceneStability]
 
 
 def place_rows(results: Results) -> Iterable[list[str]]:
-    """Where each scene is held, and what is not a limit of stiffness."""
+    """Yields where each scene is held, and the figures that are not limits."""
     yield [
         "scene",
         "held at, s",
@@ -54,7 +54,7 @@ def place_rows(results: Results) -> Iterable[list[str]]:
 
 
 def limit_rows(results: Results) -> Iterable[list[str]]:
-    """The largest stable stiffness by each way, and how far it is from the first."""
+    """Yields the largest stable stiffness by each way, relative to the first."""
     yield [
         "scene",
         "stiffness",
@@ -88,7 +88,7 @@ TABLES = {"places": place_rows, "limits": limit_rows}
 
 
 def with_tables(page: str, results: Results) -> str:
-    """Returns the page with the tables of now."""
+    """Returns the page with the present tables."""
     for name, rows in TABLES.items():
         table = to_markdown(rows(results))
         print(table)

@@ -1,4 +1,4 @@
-"""What is changed in shipped scenes to show each symptom, and what cures it."""
+"""The changes to shipped scenes that show each symptom, and those that cure it."""
 
 from __future__ import annotations
 

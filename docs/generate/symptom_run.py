@@ -21,16 +21,16 @@ _END_S = 0.3
 
 @dataclass(frozen=True)
 class Ticks:
-    """What was seen after each of the n ticks of a run.
+    """The state after each of the n ticks of a run.
 
     Attributes:
         period_s: Time of a tick, s.
         force_N: Force (n, 3) that the device is asked for, in the world.
         p_WT: Origin (n, 3) of the tool, m.
-        p_WTd: Where the handle wants it (n, 3), m.
-        depth_m: Of the deepest contact (n), m; below 0 where it is near only, and
+        p_WTd: Origin (n, 3) of the tool that the handle asks for, m.
+        depth_m: Depth (n) of the deepest contact, m; below 0 where it is near only, and
             -inf without a contact.
-        limited: Ticks at which the device's limit was met.
+        limited: Number of ticks at which the device's limit was met.
         tick_s: Median time that the work of a tick took, s.
     """
 
@@ -79,16 +79,16 @@ class Case:
     """A shipped scene with some keys changed so that it shows a symptom.
 
     Attributes:
-        section: Of the page.
+        section: Section of the page.
         scene: Name of the scene.
         figure: Key of `FIGURES`.
-        provoked: Keys of the scene, and what they are changed to.
+        provoked: Keys of the scene, and their new values.
         cure: Keys that are changed further.
         given: Keys that both have, and that the page does not name.
-        motion: What is special in the hand's motion, in words.
-        stop_s: The hand stops at the waypoint of this time; never where not given.
-        path: Instead of the scene's.
-        duration_s: Of the run, s.
+        motion: Description of what is special in the hand's motion.
+        stop_s: Time of the waypoint at which the hand stops; never where not given.
+        path: Path instead of the scene's.
+        duration_s: Duration of the run, s.
     """
 
     section: str
@@ -139,7 +139,7 @@ def set_key(scene: Scene, key: str, value: Any) -> None:
 
 
 def record(scene: Scene, duration_s: float) -> Ticks:
-    """Runs a scene and notes what each tick shows."""
+    """Runs a scene and notes the values of each tick."""
     haptic = BuildHapticDiagram(scene)
     loop = haptic.loop
     X_HT = scene.tool.grasp.to_rigid_transform()

@@ -35,7 +35,7 @@ def describe(changes: Mapping[str, Any], motion: str = "") -> str:
 
 
 def _describe_value(value: Any) -> str:
-    """Returns a value as YAML on one line; what is not given is named so."""
+    """Returns a value as YAML on one line; one that is not given is named so."""
     if value is None:
         return "not given"
     if isinstance(value, float | int | str):
@@ -61,7 +61,7 @@ def make_row(case: Case) -> list[str]:
 
 
 def describe_case(case: Case) -> list[str]:
-    """Returns what is changed, what cures it, and what is measured."""
+    """Returns the changes of a case, the cure, and the measured figure."""
     changes = {**case.provoked, **case.given}
     return [
         f"{case.scene}: {describe(changes, case.motion)}",

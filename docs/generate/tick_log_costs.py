@@ -55,7 +55,7 @@ def make_loop(stack: ExitStack, folder: Path, name: str, logged: bool):  # type:
 
 
 def count(what: str, folder: Path) -> None:
-    """Counts, in a child under valgrind, ticks of a loop or what the thread does."""
+    """Counts, in a child under valgrind, ticks of a loop or the thread's work."""
     # The thread is kept out of the loop's ticks: it would write more often than in a
     # run, which valgrind slows down.
     tick_recorder._WRITE_PERIOD_S = 1e6
@@ -108,7 +108,7 @@ def measure(kept_time: str | None) -> list[tuple[str, str]]:
     """Returns the rows of the table.
 
     Args:
-        kept_time: What is said of times; measured if not given.
+        kept_time: Text about times; measured if not given.
     """
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)

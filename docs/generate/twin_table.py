@@ -1,4 +1,4 @@
-"""Tabulates what each part of the twin costs in stable stiffness of a coupling.
+"""Tabulates the cost of each part of the twin in stable stiffness of a coupling.
 
 python docs/generate/twin_table.py --write
 """
@@ -119,7 +119,7 @@ def find_simulated_limit(twin: DeviceImperfections) -> float:
 
 
 def measure_swing(twin: DeviceImperfections, stiffness: float) -> float:
-    """Returns how far the handle still moves some time after a knock, m."""
+    """Returns the motion of the handle that is left some time after a knock, m."""
     haptic = build_without_scene_warnings(make_scene(twin, stiffness))
     simulator = Simulator(haptic.diagram)
     step_s = haptic.period_s / _STEPS_PER_TICK
@@ -164,7 +164,7 @@ def _calc_knock(haptic: HapticDiagram, context: Context) -> np.ndarray:
 
 
 def rows() -> Iterable[list[str]]:
-    """The table's rows, the head first."""
+    """Yields the table's rows, the head first."""
     yield HEAD
     ideal = math.nan
     for name, twin in TWINS.items():

@@ -24,7 +24,7 @@ _ARM_M = 0.01
 
 
 def _draw(method: str, path: Iterable[np.ndarray]) -> np.ndarray:
-    """Friction alone on a tip at each of the points it is drawn to, (n, 6) in S."""
+    """Returns friction alone on a tip at each point it is drawn to, (n, 6) in S."""
     model = _core.StickSlipModel([MU], [False], R, B_M, _REACH_M)
     state = np.zeros(model.state_size)
     shape, floor = spike(-OFFSET), make_floor()
@@ -41,18 +41,18 @@ def _draw(method: str, path: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def _vector(X: np.ndarray) -> np.ndarray:
-    """[qw qx qy qz x y z] of a (4, 4)."""
+    """Returns [qw qx qy qz x y z] of a (4, 4) pose."""
     x, y, z, w = Rotation.from_matrix(X[:3, :3]).as_quat()
     return np.array([w, x, y, z, *X[:3, 3]])
 
 
 def _pull(f: np.ndarray) -> np.ndarray:
-    """A friction force as a wrench: at p̂, halfway between tip and floor."""
+    """Returns a friction force as a wrench: at p̂, halfway between tip and floor."""
     return wrench_at(-_D / 2 * Z - OFFSET, f)
 
 
 def stick_to_slip(method: str) -> Iterator[Case]:
-    """Drawn along in steps: sticks, gives way, slides, and sticks again."""
+    """A tip drawn along in steps sticks, gives way, slides, and sticks again."""
     steps = np.arange(0, 301) * B_M / 100
     felt = _draw(method, steps[:, None] * X)
     weak = B_M * (1 + 1 / R)
@@ -92,7 +92,7 @@ def stick_to_slip(method: str) -> Iterator[Case]:
 
 
 def friction_cone(method: str) -> Iterator[Case]:
-    """Slid far in twelve directions: the whole force lies on the cone."""
+    """A tip slid far in twelve directions: the whole force lies on the cone."""
     expected, measured = [], []
     for angle in np.linspace(0, 2 * np.pi, 12, endpoint=False):
         u = np.cos(angle) * X + np.sin(angle) * Y

@@ -112,7 +112,7 @@ def two_posts(method: str) -> Iterator[Case]:
 
 
 def two_posts_of_one_object(method: str) -> Iterator[Case]:
-    """What a method makes of two contacts with one object along one direction."""
+    """A method merges two contacts with one object along one direction, or does not."""
     d, gap = -2e-4, 0.03
     posts = join_hulls(spike([0, 0, 0]), spike(gap * X))
     # Half a turn about y takes the second tip to −gap.
@@ -176,7 +176,7 @@ def groove(method: str) -> Iterator[Case]:
 
 
 def action_and_reaction(method: str) -> Iterator[Case]:
-    """On objects that move, about any point: what the tool feels, they feel back."""
+    """On objects that move, about any point: the tool and they feel opposite forces."""
     d = np.array([-3e-4, 4e-4, -1e-4])
     half = np.array([5e-3, 5e-3, 1.2e-2])
     rng = np.random.default_rng(0)

@@ -53,7 +53,7 @@ def make_sphere() -> np.ndarray:
 
 
 def sphere_on_plane(method: str) -> Iterator[Case]:
-    """Against the lowest vertex, exactly, and against the sphere it stands for."""
+    """A sphere against the plane: the lowest vertex exactly, and the smooth sphere."""
     shape = hull(make_sphere() - OFFSET)
     expected, measured = [], []
     for d in DISTANCES_M:

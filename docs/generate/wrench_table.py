@@ -124,7 +124,7 @@ and on faces that are cut.
 
 
 def row(cases: dict[str, Case]) -> list[str]:
-    """The texts of a line: one scenario through each method that answers it."""
+    """Returns the texts of a line: one scenario through each method that answers it."""
     shown = cases.get("shared") or cases["octree"]
     return [
         shown.scenario,
@@ -141,7 +141,7 @@ TITLES += tuple(f"error, {method}" for method in METHODS)
 
 
 def _text(wrench: np.ndarray) -> str:
-    """The last of (..., 6), in N and N·mm."""
+    """Returns the last of (..., 6) as text, in N and N·mm."""
     last = np.reshape(wrench, (-1, 6))[-1]
     last = np.where(np.abs(last) < 1e-12, 0.0, last)
     f, tau = (", ".join(f"{x:.5g}" for x in v) for v in (last[3:], 1e3 * last[:3]))
@@ -149,7 +149,7 @@ def _text(wrench: np.ndarray) -> str:
 
 
 def rows() -> Iterator[list[str]]:
-    """The lines of the table."""
+    """Yields the lines of the table."""
     for scenario in SCENARIOS.values():
         by_name: dict[str, dict[str, Case]] = {}
         for method in METHODS:

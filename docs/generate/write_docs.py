@@ -39,7 +39,7 @@ def with_figures(page: str, figures: BenchFigures) -> str:
 
 
 def with_tables(page: str, figures: BenchFigures) -> str:
-    """Returns the page with the tables that these figures make in place of those.
+    """Returns the page with the tables of these figures in place of its own.
 
     Tables that the page does not have yet come after all others.
     """

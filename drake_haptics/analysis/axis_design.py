@@ -22,21 +22,23 @@ from drake_haptics.bounds.sampled_spring import (
 from drake_haptics.common.one_line import one_line
 from drake_haptics.report.plain_data import to_plain_data
 
-# As B T/m. The laws that the gains come from are of first order in it.
+# Largest B T/m: the laws that the gains come from are of first order in it.
 _LARGEST_BETA = 0.2
 
 
 @dataclass(frozen=True)
 class AxisDevice:
-    """A device, one kind of motion of it, on its own.
+    """One kind of motion of a device, without a hand.
 
     Units are those of translation; of rotation kg·m², N·m·s/rad and N·m/rad.
 
     Attributes:
         mass: Apparent mass, the least in any direction, kg.
         damping: Physical damping, the least, N·s/m.
-        rated_stiffness: The stiffest it is made for, N/m; None where unknown.
-        rated_damping: The largest damping, N·s/m; None where unknown.
+        rated_stiffness: Largest stiffness that the device is made for, N/m; None if
+            unknown.
+        rated_damping: Largest damping that the device is made for, N·s/m; None if
+            unknown.
     """
 
     mass: float
@@ -47,7 +49,7 @@ class AxisDevice:
 
 @dataclass(frozen=True)
 class AxisHand:
-    """A hand on it: mass, damping and stiffness that it adds."""
+    """The mass, damping and stiffness that a hand adds to the device."""
 
     mass: float = 0.0
     damping: float = 0.0
@@ -59,12 +61,12 @@ class GripMargins:
     """Margins of a coupling in one grip.
 
     Attributes:
-        grip: Its name.
-        stiffness: The largest stable stiffness over that chosen, B as it is.
+        grip: Name of the grip.
+        stiffness: Largest stable stiffness over the chosen one, with the chosen B.
         gain: The largest stable factor on both K and B.
         largest_delay_s: The longest stable delay, s.
         held_damping: b of device and hand, N·s/m.
-        is_passive: b is enough for passivity: whatever else the hand does.
+        is_passive: Whether b is enough for passivity, whatever else the hand does.
     """
 
     grip: str
@@ -84,7 +86,7 @@ class AxisDesign:
         damping: B, N·s/m.
         stiffness_limit: The bound that limits K, in words.
         damping_limit: The bound that limits B, in words.
-        required_damping: b that makes it passive, N·s/m.
+        required_damping: Damping b that makes the coupling passive, N·s/m.
         device: The device that it is designed for.
         margins: Margins in each grip, the weakest first.
     """
@@ -115,9 +117,10 @@ def design_axis(
 ) -> AxisDesign:
     """Chooses K and B.
 
-    B is the largest of which no reason forbids more, then K is, such that in every
-    grip the exact eigenvalues bear `margin` times K. They bear `margin` times both
-    then too, since `margin` times B is still below the peak of the boundary.
+    B is the largest damping that every limit allows, and K then the largest stiffness:
+    in every grip `margin` times K must be stable by the exact eigenvalues. `margin`
+    times both gains is then stable too, since `margin` times B is still below the peak
+    of the boundary.
 
     Args:
         device: The device without a hand.
@@ -172,7 +175,7 @@ def make_wall(
     delay_s: float,
     wall_damping: float = 0.0,
 ) -> SampledWall:
-    """Returns the coupling as a wall: its tool held still, the stiffest it can be."""
+    """Returns the coupling with its tool held still, the stiffest wall it can be."""
     return SampledWall(
         mass=device.mass,
         damping=device.damping,
@@ -193,7 +196,7 @@ def _limit_damping(
     margin: float,
     passive_damping: float | None,
 ) -> dict[str, float]:
-    """Returns the largest B that each reason allows, by the reason."""
+    """Returns the largest B that each limit allows, by the limit in words."""
     per_beta = device.mass / period_s
     # More than the damping of the stiffest wall costs stiffness.
     whole = math.ceil(delay_s / period_s - 1e-9)
@@ -219,7 +222,7 @@ def _limit_stiffness(
     margin: float,
     passive_damping: float | None,
 ) -> dict[str, float]:
-    """Returns the largest K that each reason allows, by the reason."""
+    """Returns the largest K that each limit allows, by the limit in words."""
     some = next(iter(walls.values()))
     T, t_d, B = some.period_s, some.delay_s, some.wall_damping
     limits = {

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 _POINTS = 40
-# The picture reaches this many times the suggested stiffness at most.
+# Largest stiffness in the plot, over the suggested one.
 _HEADROOM = 12.0
 
 
@@ -47,7 +47,7 @@ def plot_axis_design(
     delay_s: float,
     units: tuple[str, str],
 ) -> None:
-    """Draws K over B: the device's limits when let go, passivity, and the choice.
+    """Draws K over B: the device's limits when let go, passivity, and the chosen gains.
 
     Args:
         axes: The axes to draw on.
@@ -69,7 +69,7 @@ def plot_axis_design(
         for m in design.margins
     ]
     top = min(1.1 * max(stable), _HEADROOM * design.stiffness)
-    # Those that would be out of sight stay out of the legend.
+    # Lines that would be out of sight stay out of the legend.
     visible = [
         (margins, K)
         for margins, K in passive
@@ -100,7 +100,7 @@ def plot_axis_design(
 
 @dataclass(frozen=True)
 class CouplingDesign:
-    """A coupling and how far from its limits it is.
+    """The gains of a coupling, and their margins.
 
     Attributes:
         coupling: The gains, as a scene has them.
@@ -142,11 +142,11 @@ class CouplingDesign:
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws what is stable and what is passive over B and K, and the choice.
+        """Draws the stable and the passive region over B and K, and the chosen gains.
 
         Args:
-            axes: Where the translation goes; if not given, new ones, with those of
-                the rotation beside them.
+            axes: Axes for the translation; if not given, new ones, with those of the
+                rotation beside them.
 
         Returns:
             The axes of the translation.
@@ -194,14 +194,13 @@ def suggest_coupling(
     The damping B is at most what the device is rated for, and B T/m at most 0.2; the
     stiffness is (b + B)/(T/2 + t_d) over the margin, with the damping b of the device
     alone, at most what it is rated for, and lowered until the exact eigenvalues have
-    the margin in every grip of `HAND_GRIPS`, none included: a handle may be let go.
-    The tool is taken as held still by a rigid wall, the stiffest that the coupling
-    can be.
+    the margin in every grip of `HAND_GRIPS`, none included: a handle may be let go. The
+    tool is assumed to be held still by a rigid wall, which makes the coupling stiffest.
 
     Args:
-        device: Name of a preset, or the preset: its arm at its default angles. Or
-            what is known of a handle without a hand, as `calc_held_handle` tells of
-            any plant at its default angles; it has no ratings.
+        device: Name of a preset, or the preset, with the arm at its default angles; or
+            a handle without a hand, as `calc_held_handle` returns for any plant at its
+            default angles, which has no ratings.
         rate_hz: Rate of the haptic loop, Hz.
         hand: A grip of `HAND_GRIPS` in which the coupling must also be passive: then
             B is lower. Where not given, the design only says which grips make it so.

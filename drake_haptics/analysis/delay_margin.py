@@ -10,10 +10,10 @@ from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.stability_limit import calc_growth
 
-# Delays are tried so far apart, in periods or as a share, before the edge is
-# closed in on.
+# Steps between the delays that are tried before the edge is bracketed, in periods and
+# as a share of the delay.
 _STEP, _STEP_SHARE = 0.25, 0.2
-# The longest that is tried, in periods.
+# Longest delay that is tried, in periods.
 LONGEST_DELAY = 50.0
 _TOLERANCE = 1e-4
 
@@ -22,8 +22,8 @@ _TOLERANCE = 1e-4
 def calc_delay_margin(loop: HeldLoop) -> float:
     """Returns the further delay of the device's force at which motions grow, s.
 
-    The wrench that the hold samples is shown so much later; all else stays. Infinite
-    where 50 periods are not enough, 0 where the loop is unstable as it is.
+    The wrench that the hold samples is shown later by that delay; all else stays.
+    Infinite where 50 periods are not enough, 0 where the loop is unstable as it is.
 
     Args:
         loop: The loop at its equilibrium.
@@ -72,7 +72,7 @@ def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
         moved[:n, :n] = expm(linear.rates * periods * T)
         return moved
 
-    # What each place of the queue holds after the update, by the state before it.
+    # Entries of the queue after the update, as functions of the state before it.
     sampled = np.zeros((6, size))
     sampled[:, :n] = linear.update[shown]
     queue = np.vstack([sampled, np.eye(size)[n:]])
@@ -90,9 +90,10 @@ def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
 
 
 def find_shown_wrench(names: tuple[str, ...]) -> np.ndarray:
-    """Returns where the wrench (6) that the handle feels is in a state with names.
+    """Returns the indices in a named state of the wrench (6) that the handle feels.
 
-    That of the device's hold, or of the last sample of a simulated device's delay.
+    It is the wrench of the device's hold, or the last sample of a simulated device's
+    delay.
     """
     delayed = [i for i, name in enumerate(names) if "force_delay" in name]
     if delayed:

@@ -28,12 +28,12 @@ def check_derivatives(
     """Compares a Jacobian with central differences along one random direction.
 
     A Python system that calculates in doubles under AutoDiffXd loses derivatives
-    without a word; this finds each row where that is more than 1e-4 of the row.
+    silently; this finds each row that differs by more than 1e-4 of itself.
 
     Args:
-        function: Takes a step (n,) away from the point, returns values (p,).
+        function: Function of a step (n,) from the point that returns the values (p,).
         jacobian: (p, n) its derivative at the point.
-        sizes: (n,) what a unit step is in each coordinate.
+        sizes: (n,) size of a unit step in each coordinate.
         row_names: (p,) names of the values.
         column_names: (n,) names of the coordinates.
 
@@ -70,11 +70,11 @@ def find_wrong_rows(
 def move_beside(point: np.ndarray, side: float = 1.0) -> np.ndarray:
     """Returns a point (n,) a little beside another.
 
-    Equilibria are special: what is at rest, flush or symmetric is often on a kink,
-    where differences to both sides see both slopes. Beside it there is one.
+    At an equilibrium things are at rest, flush or symmetric, so that it is often on a
+    kink, where differences to both sides mix two slopes. Beside it there is one slope.
 
     Args:
-        point: (n,).
+        point: (n,) point to move away from.
         side: 1, or -1 for the point on the opposite side.
     """
     shift = np.random.default_rng(1).uniform(-1.0, 1.0, len(point))

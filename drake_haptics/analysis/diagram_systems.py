@@ -29,8 +29,8 @@ class Timing:
     """A periodic discrete update, at offset, offset + period, ...
 
     Attributes:
-        period_s: s.
-        offset_s: s.
+        period_s: Period, s.
+        offset_s: Offset, s.
         system: Path of the system that it updates.
     """
 
@@ -92,10 +92,10 @@ class StateLayout:
     """Names and constraints of a state.
 
     Attributes:
-        names: (n,). A `MultibodyPlant` names its own coordinates, as "plant/tool_x",
-            and so does a system with a method `list_state_names()`; others are
-            "path/xc[0]" for continuous ones and "path/xd[0]" for discrete ones
-            ("path/xd1[0]" for the first of the second group).
+        names: (n,) names of the states. A `MultibodyPlant` names its own coordinates,
+            as "plant/tool_x", and so does a system with a method `list_state_names()`;
+            other states are "path/xc[0]" where continuous and "path/xd[0]" where
+            discrete ("path/xd1[0]" for the first of the second group).
         quaternions: Positions in the state of the four numbers of each unit
             quaternion of a `MultibodyPlant`.
     """
@@ -148,7 +148,7 @@ def _list_own_names(leaf: System) -> list[str]:
 
 
 def _shift_quaternions(plant: MultibodyPlant, start: int) -> list[tuple[int, ...]]:
-    """Returns where a plant's quaternions are, if its state begins at start."""
+    """Returns the indices of a plant's quaternions, if its state begins at start."""
     joints = [plant.get_joint(index) for index in plant.GetJointIndices()]
     starts = [
         start + joint.position_start()
@@ -162,7 +162,7 @@ class AutoDiffClone:
     """A system converted to AutoDiffXd once, following contexts of the original.
 
     Attributes:
-        system: The twin.
+        system: The AutoDiffXd twin.
         context: Its root context.
     """
 
@@ -182,8 +182,8 @@ class AutoDiffClone:
     def follow(self, context: Context) -> None:
         """Takes time, state, parameters and fixed inputs from an original's context.
 
-        Systems with a method `prepare_conversion(context)` first write into the
-        parameters of their part of it what they remember elsewhere.
+        Systems with a method `prepare_conversion(context)` first write what they
+        remember outside of the context into their parameters in it.
 
         Args:
             context: A root context of the original that may be changed so.

@@ -30,7 +30,7 @@ from drake_haptics.analysis.sampled_map import (
 from drake_haptics.common.value_checks import check_at_least, check_positive
 
 # Singular values below this part of the largest are directions that nothing holds:
-# quaternion lengths, memories of friction. A step has no part in them.
+# quaternion lengths, memories of friction. No step goes along them.
 _RANK = 1e-11
 # Levenberg's damping of a step, relative to the largest singular value.
 _FIRST_DAMPING = 1e-8
@@ -45,7 +45,8 @@ class Equilibrium:
     """A state that one period leaves as it is.
 
     Attributes:
-        context: A root context there, apart from the state as the user's.
+        context: Root context at the equilibrium; only its state differs from the
+            user's.
         residual: Largest change of a state over a period, relative to its size or 1.
         iterations: Steps of Newton's method taken.
     """
@@ -79,8 +80,8 @@ def find_equilibrium(
         context: Its root context; it is not changed.
         period_s: Time over which a rate counts as a change, s; if not given the
             shortest period, or 1 s where nothing is updated periodically.
-        settle_s: Simulated first for so long, s; for systems that do not depend on
-            time.
+        settle_s: Duration of a simulation before the search, s; for systems that do not
+            depend on time.
         tolerance: Bound of `Equilibrium.residual`.
         max_iterations: Bound of `Equilibrium.iterations`.
 
@@ -132,7 +133,7 @@ class _Search:
         return float(np.where(np.isfinite(relative), relative, np.inf).max(initial=0.0))
 
     def step(self) -> bool:
-        """Goes to a better state; returns False if there is none on the way."""
+        """Goes to a better state; returns False if there is not one on the way."""
         if not np.isfinite(self._change).all():
             return False
         self.iterations += 1
@@ -205,7 +206,7 @@ class _Search:
 def _settle(
     diagram: System, context: Context, timings: Sequence[Timing], settle_s: float
 ) -> Context:
-    """Returns the context after a simulation, at the time from before it.
+    """Returns the context after a simulation, its time set back to the start.
 
     Raises:
         ValueError: The system depends on time.
@@ -222,7 +223,7 @@ def _settle(
                 " changes with it: settle by a simulation of your own up to the time"
                 " of interest, and give its context"
             )
-    # What systems remember of the way there stays in the clone.
+    # What systems remember of the simulation stays in the clone.
     settled = context.Clone()
     Simulator(diagram, settled).AdvanceTo(time_s + settle_s)
     settled.SetTime(time_s)

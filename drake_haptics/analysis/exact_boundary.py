@@ -57,7 +57,7 @@ class ExactBoundary:
         delay_samples: d.
         beta: B T/m, (n,), rising from 0.
         alpha: K T²/m, (n,): the stiffness that is no longer stable.
-        peak: The stiffest of all.
+        peak: Point of the largest stiffness.
     """
 
     delay_samples: int
@@ -97,7 +97,7 @@ def calc_exact_boundary(delay_samples: int, points: int = 200) -> ExactBoundary:
         points: Points of the curve, from β = 0 to where no stiffness is stable.
 
     Raises:
-        ValueError: The delay is negative or no whole number, or points less than 2.
+        ValueError: The delay is negative or not a whole number, or points less than 2.
     """
     check_at_least(2, points=points)
     angles = np.linspace(0.0, _end_of_angles(delay_samples), points)
@@ -153,7 +153,7 @@ def calc_boundary_peak(delay_samples: int) -> BoundaryPoint:
 def calc_exact_alpha(beta: float, delay_samples: int) -> float:
     """Returns α = K T²/m below which the loop is stable with β = B T/m.
 
-    Zero where no stiffness is: β = 0, or more damping than the delay allows.
+    Zero where no stiffness is stable: β = 0, or more damping than the delay allows.
 
     Raises:
         ValueError: The delay is negative or no whole number, or β is negative.

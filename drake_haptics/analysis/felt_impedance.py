@@ -26,17 +26,18 @@ class FeltImpedance:
     that the coupling damps is the backward difference of the displacements, as from
     encoders.
 
-    A force that is no gradient drives a hand that moves in circles, however slowly, and
-    no damper makes it passive: at frequency ω it would take K_c/ω. Penalty forces of
-    meshes are such, a little, since the normal does not turn just as the depth changes.
-    That part of the stiffness is kept apart, and so is what looks like it only because
-    rotations do not commute (a torque of the world turns with nothing).
+    A force that is not the gradient of a potential drives a hand that moves in circles,
+    however slowly, and no damper makes it passive: at frequency ω it would take K_c/ω.
+    Penalty forces of meshes have a small part of this kind, since the normal does not
+    turn exactly as the depth changes. That part of the stiffness is kept apart
+    (`curl`), and so is the part that looks like it only because rotations do not
+    commute (a torque fixed in the world turns with nothing).
 
     Attributes:
-        A: (n, n).
-        B: (n, 6).
-        C: (6, n).
-        D: (6, 6), without `curl` and the torque's own part.
+        A: (n, n) state matrix.
+        B: (n, 6) input matrix.
+        C: (6, n) output matrix.
+        D: (6, 6) feedthrough matrix, without `curl` and the torque's own part.
         period_s: T, s.
         curl: (6, 6) antisymmetric part of the stiffness at standstill.
         handle_damping: (6, 6) damping of the device's joints and of the hand, at the
@@ -75,7 +76,7 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
             "the arm is singular where it is held: hold the scene at another time"
         ) from error
     T = linear.period_s
-    # Discrete rows of A are the update itself: nothing of them moves in between.
+    # Discrete rows of A are the update itself: they do not change in between.
     update = linear.A[n_c:]
     by_displacement = (update[:, :n_q] + update[:, n_q:n_c] / T) @ per_displacement
     by_last = -update[:, n_q:n_c] / T @ per_displacement
@@ -133,7 +134,7 @@ def _calc_antisymmetric_stiffness(
 
 
 def _calc_torque_part(torque: np.ndarray) -> np.ndarray:
-    """Returns what a torque adds to the stiffness, since rotations do not commute.
+    """Returns the stiffness that a torque adds, since rotations do not commute.
 
     At the rotation vector θ a potential's torque is -∂U + ½ θ × τ to first order: the
     inverse left Jacobian of SO(3), transposed.

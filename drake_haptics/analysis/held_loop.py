@@ -68,9 +68,9 @@ def build_with_same_load(
 ) -> tuple[HapticDiagram, Context]:
     """Builds a held scene with other gains, the tool pressed as before.
 
-    A stiffer coupling that is stretched as far would press harder, and where it
-    presses is not where stability was asked for. So handle and hand are moved until
-    their springs load the tool with the same wrench.
+    A stiffer coupling, stretched as far, would press harder, and the tool would rest
+    elsewhere. So handle and hand are moved until their springs load the tool with the
+    same wrench.
 
     Args:
         held: The result of `hold_scene`.
@@ -80,7 +80,7 @@ def build_with_same_load(
         The diagram, and its root context at rest but for round-off.
 
     Raises:
-        ValueError: A spring without stiffness would have to hold a load, one would
+        ValueError: A spring without stiffness would have to hold a load, a spring would
             turn too far, or the device does not reach so far.
         SceneError: The hand would leave the device's workspace.
     """
@@ -94,7 +94,7 @@ def build_with_same_load(
     haptic = build_without_scene_warnings(scene)
     context = haptic.diagram.CreateDefaultContext()
     context.SetTimeStateAndParametersFrom(held.context)
-    # These are parameters too.
+    # The gains are parameters too: those of the held scene were just copied.
     write_live_values(haptic, context, scene)
     _set_handle(haptic, scene, context, aim)
     return haptic, context
@@ -135,7 +135,7 @@ def _stretch(
     stiffness: float,
     whose: str,
 ) -> RigidTransform:
-    """Returns where the other end of a spring must be to load B so."""
+    """Returns the pose of a spring's other end at which it loads B so."""
     for load, k in [(torque, rotational_stiffness), (force, stiffness)]:
         if k == 0.0 and np.linalg.norm(load) > _NO_LOAD:
             raise ValueError(
@@ -158,7 +158,7 @@ def _stretch(
 
 
 def _set_handle(haptic: HapticDiagram, scene: Scene, root: Context, aim: _Aim) -> None:
-    """Moves the arm, and shows on it what it must show."""
+    """Moves the arm, and sets the wrench that the handle is shown."""
     device = haptic.loop.device
     plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
     context = plant.GetMyMutableContextFromRoot(root)
@@ -201,7 +201,7 @@ class HeldLoop:
 
     @on_one_blas_thread
     def measure_growth(self) -> float:
-        """Returns the same, as two simulations that start side by side show it.
+        """Returns the growth per tick that two simulations show, started side by side.
 
         Raises:
             ValueError: The motion cannot be followed; see
@@ -256,13 +256,13 @@ def replace_gains(
 
 @dataclass(frozen=True)
 class CouplingGrowth:
-    """Tells for a stiffness and a damping of the coupling how a held scene's loop does.
+    """Calculates the growth of a held scene's loop for a stiffness and a damping.
 
-    For a `calc_z_width`: it can be pickled, and each process holds the scene once.
+    It is for `calc_z_width`: it can be pickled, and each process holds the scene once.
 
     Attributes:
         scene: The scene.
-        time_s: When its hand stops, s.
+        time_s: Time at which the hand stops, s.
     """
 
     scene: Scene
@@ -275,7 +275,7 @@ class CouplingGrowth:
 
         Args:
             stiffness: Stiffness of the coupling in translation, N/m.
-            damping: N·s/m.
+            damping: Damping of the coupling in translation, N·s/m.
 
         Raises:
             ValueError: There is no equilibrium.

@@ -28,12 +28,13 @@ from drake_haptics.scene.schema import (
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import RunError, make_simulator, run
 
-# A hand comes to a stop in no less than this.
+# Shortest time in which a hand stops.
 _SHORTEST_STOP_S = 0.05
-# Places that are tried for the tool to rest at, and how far they are apart in time.
+# Number of places at which the tool is held to find one where it rests, and the
+# shortest time between them.
 _MOST_PLACES = 6
 _APART_S = 0.05
-# A loop that is to settle but is not stable is tried with a softer coupling.
+# A loop that does not settle is tried with a softer coupling, so many times.
 _MOST_SOFTENINGS = 8
 # A tool that moves no faster, m/s and rad/s, has settled.
 _SETTLED_SPEED = 5e-3
@@ -46,12 +47,12 @@ class HeldScene:
     """A scene that stands still, its hand holding the tool at a place on its path.
 
     Attributes:
-        scene: Its path ends there.
-        time_s: When the hand stops, s.
+        scene: Scene whose path ends at that place.
+        time_s: Time at which the hand stops, s.
         context: Root context of the scene's diagram, at rest.
         X_WT: Pose of the tool at rest.
-        F_To_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
-            in the world.
+        F_To_W: Spatial force (6,) of the coupling on the tool there, [N·m; N], at the
+            tool's origin in the world.
         restless_s: Times of firmer contacts, s, at which the tool did not come to rest.
     """
 
@@ -65,7 +66,7 @@ class HeldScene:
     __repr__ = one_line
 
     def against_rigid_wall(self) -> HeldScene:
-        """Returns the same with a tool that nothing moves.
+        """Returns the held scene with a tool that nothing moves.
 
         A wall that does not give way is the worst that a device can feel. The coupling
         still draws the handle to where the tool is; the tool is too heavy to follow,
@@ -84,8 +85,8 @@ class HeldScene:
 def find_firmest_contact(scene: Scene) -> float:
     """Returns the time at which the tool is pressed most along the hand's path, s.
 
-    One lap of the path is simulated. Where the tool touches nothing that is the time
-    at which it is nearest to something; where nothing is near, the path's end.
+    One lap of the path is simulated. If the tool touches nothing, that is the time at
+    which it is nearest to something; if nothing is near, the path's end.
 
     Raises:
         drake_haptics.simulation.run.RunError: The scene diverges before it touches.
@@ -103,16 +104,17 @@ def hold_scene(
 ) -> HeldScene:
     """Stops a scene's hand on its path and lets the tool come to rest.
 
-    The way there is simulated as in a run, so that the tool touches from where it
-    came. Where the scene's own coupling does not settle, softer ones are tried for
-    the way; `drake_haptics.analysis.held_loop.build_with_same_load` gives it its own
-    again.
+    The way there is simulated as in a run, so that the tool touches from the side that
+    it came from. Where the scene's own coupling does not settle, softer ones are tried;
+    `drake_haptics.analysis.held_loop.build_with_same_load` then restores the scene's
+    own.
 
     Args:
         scene: The scene to hold.
-        time_s: When the hand stops, s, on a periodic path of its first lap. If not
-            given, at the firmest contact at which the tool comes to rest: on a ridge
-            between two facets it may rock from one to the other for ever.
+        time_s: Time at which the hand stops, s; on a periodic path, in the first lap.
+            If not given, the time of the firmest contact at which the tool comes to
+            rest: on a ridge between two facets it may rock from one to the other for
+            ever.
         settle_s: Time for the tool to come to rest, s.
         progress: Called with the current work and its share that is done, in [0, 1].
 
@@ -122,7 +124,7 @@ def hold_scene(
         SceneError: The scene cannot be built.
     """
     report = progress or (lambda what, share: None)
-    # An equilibrium could not be found, and why is not seen in a search that fails.
+    # Without derivatives the search for an equilibrium would fail without saying why.
     check_conversion(build_without_scene_warnings(scene).diagram)
     report("looking for the firmest contact", 0.0)
     places = _find_firm_places(scene) if time_s is None else [time_s]
@@ -174,8 +176,8 @@ def stop_hand(scene: Scene, time_s: float) -> Scene:
     """Returns a scene whose hand goes along its path and stops at a time.
 
     Args:
-        scene: The device's base stays where it is in this one.
-        time_s: Not after the path's end, s.
+        scene: Scene to change; the device's base stays where it is in it.
+        time_s: Time of the stop, s, not after the path's end.
 
     Raises:
         ValueError: The time is not on the path.
@@ -201,7 +203,7 @@ def stop_hand(scene: Scene, time_s: float) -> Scene:
         device=replace(
             scene.device,
             base=to_scene_pose(place_base(scene, path)),
-            # How fast a simulation runs here must not change what it finds.
+            # The speed of this machine must not change the result.
             tick_budget_us=None,
         ),
         hand=replace(
@@ -213,7 +215,7 @@ def stop_hand(scene: Scene, time_s: float) -> Scene:
 def _settle(
     scene: Scene, until_s: float
 ) -> tuple[Context, RigidTransform, np.ndarray] | None:
-    """Returns where a scene's tool rests, or None where it does not in the end."""
+    """Returns where a scene's tool rests, or None if it does not come to rest."""
     haptic = build_without_scene_warnings(scene)
     simulator = make_simulator(haptic)
     try:
@@ -223,7 +225,7 @@ def _settle(
     coupling = haptic.loop.coupling_model
     context = simulator.get_context()
     velocity = haptic.diagram.GetOutputPort("V_WT").Eval(context)
-    # NaN is not below either.
+    # NaN is not below it either.
     if not np.abs(velocity).max() < _SETTLED_SPEED:
         return None
     try:
@@ -236,7 +238,7 @@ def _settle(
 
 
 def _soften(coupling: CouplingParameters) -> CouplingParameters:
-    """Returns softer gains: none above the defaults, or else half of all.
+    """Returns gains lowered to the defaults, or halved if none is above them.
 
     The defaults are stable on the shipped device.
     """
@@ -248,7 +250,7 @@ def _soften(coupling: CouplingParameters) -> CouplingParameters:
 
 
 def build_without_scene_warnings(scene: Scene) -> HapticDiagram:
-    """Builds a scene; whether its coupling is stable is what is looked for."""
+    """Builds a scene without warnings: the analysis itself tells what is stable."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SceneWarning)
         return BuildHapticDiagram(scene)

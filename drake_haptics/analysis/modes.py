@@ -25,9 +25,9 @@ class PeriodMap:
     The state is that just before a sampling instant.
 
     Attributes:
-        A: (n, n).
-        period_s: s.
-        state_names: (n,), as "plant/tool_x" or "controller/xd[0]".
+        A: (n, n) matrix of the map.
+        period_s: Period of the map, s.
+        state_names: (n,) names, as "plant/tool_x" or "controller/xd[0]".
         state: (n,) the equilibrium.
         quaternions: Positions in the state of the four numbers of each unit
             quaternion, whose length is no motion.
@@ -70,9 +70,9 @@ def check_return(
 
     Args:
         x: (n,) state.
-        change: (n,) what one period adds to it.
-        names: (n,).
-        tolerance: Its bound, relative to the state's size or 1.
+        change: (n,) change of the state over one period.
+        names: (n,) names of the states.
+        tolerance: Bound of the change, relative to the state's size or 1.
 
     Raises:
         ValueError: A state changes by more; names the one that changes most.
@@ -88,7 +88,7 @@ def check_return(
     return float(relative[worst])
 
 
-# Parts of the paths of states which each haptic loop has, and which tell nothing.
+# Parts of the states' paths that every haptic loop has, and that tell nothing.
 _KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sample)/")
 # The state of one joint, angle or rate, and one of the tool, pose or velocity.
 _JOINT = re.compile(r"device/simulated_arm/arm/(\w+)_[qw]")
@@ -97,13 +97,13 @@ _TOOL_TURNING = "tool turning"
 
 
 def list_parts(states: Iterable[str]) -> list[str]:
-    """Returns what moves where states change, each part once.
+    """Returns the names of the parts that move, each once.
 
-    Those that each haptic loop has are named in words: "elbow joint" for
-    "device/simulated_arm/arm/elbow_joint_w", its rate, and "..._q", its angle;
-    "tool along x" for "haptic_tool/step/x" and "vx", "tool about x" for "wx", axes of
-    the world. The elements of the tool's quaternion belong to no axis, "tool turning",
-    and are not named beside a rate, which has one.
+    Parts that each haptic loop has are named in words: "elbow joint" for
+    "device/simulated_arm/arm/elbow_joint_w", its rate, and "..._q", its angle; "tool
+    along x" for "haptic_tool/step/x" and "vx", "tool about x" for "wx", axes of the
+    world. The elements of the tool's quaternion have no axis: they are "tool turning",
+    and are left out beside a rate, which has one.
 
     Args:
         states: Names of states, those that take the largest part first.
@@ -167,7 +167,7 @@ class Mode:
 
     Attributes:
         kind: Meaning of the mode.
-        eigenvalue: λ, that with the positive imaginary part.
+        eigenvalue: λ; of a pair, the one with the positive imaginary part.
         period_s: T of the map, s.
         participation: (name of the state, share) of the states that take part, largest
             first; the shares of all states add up to 1 (Pérez-Arriaga, Verghese and
@@ -211,9 +211,9 @@ class Mode:
         return self.period_s * math.log(_DIED_OUT) / math.log(magnitude)
 
     def describe(self) -> str:
-        """Returns it in a line, as "27.3 Hz, damped 4 % of critical, ...".
+        """Returns one line, as "27.3 Hz, damped 4 % of critical, ...".
 
-        What moves in a haptic loop is named in words, "elbow joint" for
+        The moving parts of a haptic loop are named in words, "elbow joint" for
         "device/simulated_arm/arm/elbow_joint_q"; `participation` has the names of the
         states.
         """
@@ -295,7 +295,7 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
 def describe_motion(mode: Mode) -> str:
     """Returns how fast a motion swings and what moves, as "245 Hz; mostly ...".
 
-    For a motion at the limit of stability, which neither grows nor dies out.
+    It is for a motion at the limit of stability, which neither grows nor dies out.
     """
     swings = mode.frequency_hz > 0.0
     rate = f"{mode.frequency_hz:.3g} Hz" if swings else "without swing"
@@ -324,7 +324,7 @@ def _make_mode(
 
 
 def _split_quaternions(linear: PeriodMap) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Returns a basis of what may move, and the lengths of quaternions, (n,) each.
+    """Returns a basis of the possible motions, and quaternions' lengths, (n,) each.
 
     A map that keeps a quaternion's length has it as a left eigenvector of eigenvalue 1,
     and what is normal to it goes to itself: the basis leaves it out, so that it cannot

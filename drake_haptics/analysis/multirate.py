@@ -47,9 +47,9 @@ from drake_haptics.common.value_checks import check_positive
 
 # Periods are taken for fractions of a second with denominators up to this.
 _LARGEST_DENOMINATOR = 10**7
-# A common period of more of the shortest is an accident of rounding.
+# A common period of more than this many of the shortest is an accident of rounding.
 _MOST_PERIODS = 10_000
-# Times are the same that differ by less than this part of a period.
+# Times that differ by less than this part of a period are the same.
 _SAME_TIME = 1e-9
 
 
@@ -60,11 +60,11 @@ def find_hyperperiod(
 
     Args:
         timings: Timings of all periodic updates.
-        hyperperiod_s: Returned, if it is a multiple of all periods.
+        hyperperiod_s: Time to return if it is a multiple of all periods, s.
 
     Raises:
-        ValueError: It is not a common period; or it is not given, and there are no
-            periods, or no common multiple below 10000 of the shortest.
+        ValueError: `hyperperiod_s` is not a common period; or it is not given, and
+            there are no periods, or no common multiple below 10000 of the shortest.
     """
     periods = sorted({timing.period_s for timing in timings})
     if hyperperiod_s is not None:
@@ -103,7 +103,7 @@ def snap_to_update(time_s: float, timings: Sequence[Timing]) -> float:
     """Returns the first of the updates that are at a time but for round-off, s.
 
     Drake multiplies period by count, so that 3 · 0.1 s is after 0.3 s: a simulation up
-    to the second of them would do the other's update too.
+    to the later of the two would do the update of the earlier one too.
     """
     near = [time_s]
     for timing in timings:
@@ -142,12 +142,12 @@ def calc_monodromy(
     """Linearizes a system over one hyperperiod, in which all its updates come round.
 
     A simulation in AutoDiffXd with fixed steps of a third-order Runge-Kutta method
-    gives ∂x(t + H)/∂x(t); its eigenvalues are the Floquet multipliers. For several
-    rates and offsets, and for discrete plants that sample their output ports; these
-    step before the discrete updates of the same time, and what they remember of the
-    last step counts as a function of the state. For one rate `linearize_sampled` is
-    exact and faster. All events run, publish events too; time goes on from that of
-    the context.
+    gives ∂x(t + H)/∂x(t); its eigenvalues are the Floquet multipliers. It is for
+    several rates and offsets, and for discrete plants that sample their output ports;
+    these step before the discrete updates of the same time, and what they remember of
+    the last step counts as a function of the state. For one rate `linearize_sampled` is
+    exact and faster. All events run, publish events too; time goes on from that of the
+    context.
 
     Args:
         diagram: Any system that converts to AutoDiffXd.
@@ -157,9 +157,9 @@ def calc_monodromy(
         tolerance: Bound of `equilibrium_residual`.
 
     Raises:
-        ValueError: The state does not return; H is no multiple of all periods, or
-            there is none and H is not given; a system has abstract state, does not
-            convert, or loses derivatives; Drake refuses otherwise.
+        ValueError: The state does not return; H is not a multiple of all periods, or
+            there is no such multiple and H is not given; a system has abstract state,
+            does not convert, or loses derivatives; Drake refuses otherwise.
     """
     check_system_and_context(diagram, context)
     check_positive(tolerance=tolerance)
@@ -223,7 +223,7 @@ def _simulate(
     span_s: tuple[float, float],
     step_s: float,
 ) -> np.ndarray:
-    """Returns the state (n,) just before the updates at the end, of a scalar."""
+    """Returns the state (n,) just before the updates at the end, in a scalar type."""
     context.SetTime(span_s[0])
     set_state(context, x)
     simulator = Simulator_[scalar](system, context)

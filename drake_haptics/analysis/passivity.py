@@ -93,7 +93,7 @@ def as_transfer(
 ) -> tuple[Callable[[complex], np.ndarray], np.ndarray]:
     """Returns H as a function that returns (m, m), and its poles.
 
-    The poles are those of a linear system; a function keeps its own to itself.
+    The poles are those of a linear system; those of a function are not known.
 
     Raises:
         ValueError: The system is of another period, unstable or not square.
@@ -149,12 +149,12 @@ def _square(
 
 
 _POINTS = 400
-# The condition is even in ω: this near to 0 it is its limit there to 1e-8 of itself,
-# and cot(ωT/2) still loses only four digits.
+# The condition is even in ω: this near to 0 it equals its limit there to 1e-8 of
+# itself, and cot(ωT/2) still loses only four digits.
 _LOWEST_ANGLE = 1e-4
-# Around a pole's angle, in half widths of its resonance.
+# Points of the grid around a pole's angle, in half widths of its resonance.
 _NEAR_POLES = np.array([-30, -10, -3, -1, -0.5, 0, 0.5, 1, 3, 10, 30])
-# As many of the highest points of the grid are refined.
+# Number of the highest points of the grid that are refined.
 _PEAKS = 3
 
 
@@ -170,7 +170,8 @@ class Passivity:
             all m axes alike, D = b I. Meaningless where axes of translation and of
             rotation are mixed: see `calc_usage`.
         worst_damping: The largest of `required_damping`: b must be larger.
-        worst_frequency_Hz: Frequency of that; 0 where it is the limit at standstill.
+        worst_frequency_Hz: Frequency of `worst_damping`; 0 where it is the limit at
+            standstill.
     """
 
     period_s: float
@@ -214,7 +215,7 @@ class Passivity:
 
         Args:
             axes: The axes to draw on. Defaults to new ones.
-            available: What there is, N·s/m, by name: "device", "device and hand".
+            available: Available damping, N·s/m, by name: "device", "device and hand".
         """
         axes = find_axes(axes)
         axes.plot(self.frequencies_Hz, self.required_damping, label="required")
@@ -253,9 +254,9 @@ def calc_passivity(
             with A, B, C and D, such as pydrake's `LinearSystem`, whose input is x and
             whose output is the force that resists, +H x.
         period_s: T, s.
-        frequencies_Hz: Where to look, 0 < f <= 1/(2 T); 0 asks for the limit. If not
-            given, a grid over all, dense at a linear system's poles, and refined at
-            its three highest peaks.
+        frequencies_Hz: Frequencies, 0 < f <= 1/(2 T); 0 asks for the limit. If not
+            given, a grid over all, dense at a linear system's poles, and refined at its
+            three highest peaks.
 
     Raises:
         ValueError: The period is not positive or not that of the system, a frequency
@@ -324,8 +325,8 @@ def _refine(angles: np.ndarray, matrix_at: Callable[[float], np.ndarray]) -> np.
     values = np.array([damping_at(angle) for angle in angles])
     inner = values[1:-1]
     peaks = 1 + np.flatnonzero((inner >= values[:-2]) & (inner >= values[2:]))
-    # Searched from the grid's point: the search ends at half of the digits of what it
-    # is given.
+    # The offset from the grid's point is searched, not the angle: a search is exact to
+    # half of the digits of its variable.
     tops = [
         angles[i]
         + minimize_scalar(

@@ -12,7 +12,7 @@ def find_axes(axes: Axes | None, size: tuple[float, float] | None = None) -> Axe
     """Returns axes to draw in.
 
     Args:
-        axes: They are returned; None makes a figure.
+        axes: Axes to return; None makes a new figure.
         size: Width and height of the figure, inches. Defaults to Matplotlib's.
     """
     if axes is not None:

@@ -1,8 +1,8 @@
 """Refuses, with a reason, what an analysis cannot describe.
 
-Preconditions are checked before. What Drake itself refuses becomes an error that a
-caller can catch and act on: pydrake turns a failed C++ assertion into `SystemExit`,
-which passes every `except Exception` and ends the interpreter; any other failure is a
+Preconditions are checked first. A refusal of Drake's own becomes an error that a caller
+can catch and act on: pydrake turns a failed C++ assertion into `SystemExit`, which
+passes every `except Exception` and ends the interpreter; any other failure is a
 `RuntimeError` that tells what failed inside Drake, not what to change.
 """
 
@@ -141,8 +141,8 @@ def check_events(system: System, context: Context, period_s: float) -> None:
 
     pydrake does not list a system's events, so a clone is simulated from time 0, when
     every periodic event without an offset is due, for two parts of a period, in which
-    none is; Drake's own counters tell what ran. Publish events run too. An unrestricted
-    update that has an offset of more than that is not seen.
+    no event is due; Drake's own counters tell what ran. Publish events run too. An
+    unrestricted update that has an offset of more than that is not seen.
 
     Args:
         system: A system whose periodic discrete updates have one period, no offset.
@@ -259,7 +259,7 @@ _ASSERTION = re.compile(r"(Failure|abort\w*): |Failure at ")
 def explain_drake_errors(doing: str) -> Iterator[None]:
     """Raises a `ValueError` with the reason where Drake would end the program.
 
-    Also a decorator. A `SystemExit` that is not Drake's passes, as does a
+    It is also a decorator. A `SystemExit` that is not Drake's passes, as does a
     `RuntimeError` whose text is not known here: it is the user's own.
 
     Args:

@@ -53,11 +53,11 @@ class SampledLinearization(PeriodMap):
         C: (p, n), without rows if no output was chosen.
         D: (p, m).
         update: (n, n) the discrete update alone, x_c unchanged.
-        rates: (n, n) of the motion after it, zero in the rows of x_d:
+        rates: (n, n) rates of the motion after it, zero in the rows of x_d:
             A = exp(T rates) update.
-        kinks: Names of the states and outputs whose change has another slope to each
-            side of the equilibrium, as where a contact just opens or rests without
-            speed: theirs is the one that AutoDiffXd takes.
+        kinks: Names of the states and outputs whose slope differs between the two sides
+            of the equilibrium, as where a contact just opens or rests without speed;
+            their derivative is the one that AutoDiffXd takes.
     """
 
     B: np.ndarray

@@ -49,9 +49,9 @@ class SampledValues:
 class SampledMap:
     """x_d⁺ = f_d(x_c, x_d, u), ẋ_c = f_c(x_c, x_d⁺, u), y = g(x_c, x_d, u) of a system.
 
-    In doubles and in AutoDiffXd, at one time and with all other inputs as they are in
-    the context. All discrete groups that are updated periodically are updated, of
-    whatever period.
+    It is evaluated in doubles and in AutoDiffXd, at one time and with all other inputs
+    as they are in the context. All discrete groups that are updated periodically are
+    updated, whatever their period.
 
     Attributes:
         x: (n,) the context's state [x_c; all discrete groups].
@@ -79,8 +79,8 @@ class SampledMap:
             output_port: A vector port of the system.
 
         Raises:
-            ValueError: A system inside has several timings, which pydrake does not
-                let one evaluate singly.
+            ValueError: A system inside has several timings, which pydrake cannot
+                evaluate singly.
         """
         names = [timing.system for timing in timings]
         several = sorted({name for name in names if names.count(name) > 1})
@@ -111,8 +111,8 @@ class SampledMap:
         """Returns the values of the three functions.
 
         Args:
-            x: (n,) where update and output are taken.
-            held: (n,) [x_c; x_d⁺], where the rates are taken.
+            x: (n,) state at which update and output are taken.
+            held: (n,) state [x_c; x_d⁺] at which the rates are taken.
             u: (m,) the input.
         """
         return self._calc(self._system, self.context, x, held, u)
@@ -122,8 +122,8 @@ class SampledMap:
     ) -> SampledValues:
         """Returns the derivatives of the three functions, arguments as for `calc`.
 
-        A row without derivatives is zero: whether it should be is for
-        `check_derivatives` to say.
+        A row without derivatives is zero: `check_derivatives` tells whether it should
+        be.
 
         Raises:
             RuntimeError: A system has no AutoDiffXd twin, or cannot be evaluated.

@@ -21,7 +21,7 @@ from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 
 # Stiffnesses are tried this factor apart before the edge is bisected.
 _STEP = 2.0 ** (1.0 / 8.0)
-# The softest that is tried, as K T²/m: softer ones are not told from the free handle.
+# Softest wall that is tried, as K T²/m: softer ones are not told from the free handle.
 _SOFTEST_ALPHA = 1e-6
 _RELATIVE_TOLERANCE = 1e-10
 # Delays are told apart to this part of a period: less is round-off of t_d/T.
@@ -102,7 +102,7 @@ class SampledWall:
         force[0] = -self.stiffness - difference
         force[1] = -self.wall_damping if self.true_velocity else 0.0
         force[2] = difference
-        # By row: what is shown 0, 1, ... periods after it was calculated.
+        # Row k is the force that is shown k periods after it was calculated.
         shown = np.vstack([force, np.eye(size)[3:]])
 
         A = np.zeros((size, size))
@@ -154,7 +154,7 @@ def calc_largest_stiffness(wall: SampledWall) -> float:
     if even the softest is unstable, as with too much damping of the wall.
 
     Args:
-        wall: All but its stiffness.
+        wall: The wall, whose stiffness is not used.
     """
     # Ends: held for a period, a stiff enough spring throws the handle back farther
     # than it was.
@@ -196,7 +196,7 @@ def calc_largest_delay(wall: SampledWall) -> float:
     frequency, as of a soft wall in a firm hand.
 
     Args:
-        wall: All but its delay.
+        wall: The wall, whose delay is not used.
     """
     if _calc_largest_loop_gain(wall) < 1.0:
         return math.inf
@@ -229,7 +229,7 @@ def _find_edge(
 
 
 def _calc_largest_loop_gain(wall: SampledWall) -> float:
-    """Returns the most that the wall's force makes of itself in one round."""
+    """Returns the largest loop gain of the wall's force over all frequencies."""
     flow, push = wall._calc_flow(wall.period_s)
     angles = np.geomspace(1e-6, math.pi, 4000)
     z = np.exp(1j * angles)

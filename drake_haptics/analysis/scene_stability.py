@@ -54,7 +54,7 @@ class SceneStability:
 
     Attributes:
         scene: The scene, its hand stopped.
-        time_s: When the hand stopped on its path, s.
+        time_s: Time at which the hand stopped on its path, s.
         handle: Inertia and damping of device and hand where they are.
         num_contacts: Number of contacts that push at rest.
         contact_force_N: Contact force on the tool, at rest, N.
@@ -62,11 +62,11 @@ class SceneStability:
         linearization: Linear map of one tick.
         modes: All motions, fastest growing first.
         delay_margin_s: Further delay at which the loop becomes unstable, s.
-        limits: Of the coupling's stiffness in translation and in rotation, in this
-            contact and against a rigid wall; without those that the coupling does
+        limits: Limits of the coupling's stiffness in translation and in rotation, in
+            this contact and against a rigid wall; without those that the coupling does
             not have.
-        felt: What damping makes passive what the device feels, over frequency.
-        damping_usage: How much of the damping of device and hand that is, at each
+        felt: Damping that makes the felt impedance passive, over frequency.
+        damping_usage: Share of the damping of device and hand that this takes, at each
             frequency of `felt`: passive where it is at most 1.
         broken_bounds: Sentences of `check_coupling`.
         map: Growth over stiffness and damping of translation; None if not asked for.
@@ -161,15 +161,16 @@ def analyze_scene(
     store: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> SceneStability:
-    """Analyses the stability of a scene where its tool is held in contact.
+    """Analyzes the stability of a scene where its tool is held in contact.
 
     Args:
         scene: A scene with a simulated device and hand.
-        time_s: When the hand stops on its path, s; at the firmest contact if not
+        time_s: Time at which the hand stops on its path, s; the firmest contact if not
             given.
-        map_size: Stiffnesses and dampings of the map, each, at least 2; 0 for no map.
-        executor: Computes the map, see `run_study`.
-        store: Keeps the map's results, see `run_study`.
+        map_size: Number of stiffnesses and of dampings of the map, at least 2; 0 for no
+            map.
+        executor: Executor that computes the map, see `run_study`.
+        store: Store of the map's results, see `run_study`.
         progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
@@ -246,7 +247,7 @@ def _find_limits(held: HeldScene, report: Progress) -> tuple[StiffnessLimits, ..
 def _choose_grid(
     scene: Scene, limits: tuple[StiffnessLimits, ...], size: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns stiffnesses (N/m) and dampings (N·s/m) around what is stable."""
+    """Returns stiffnesses (N/m) and dampings (N·s/m) around the stable ones."""
     coupling = scene.coupling
     found = [
         value
@@ -262,7 +263,7 @@ def _choose_grid(
 
 
 def _read_contact(loop: HeldLoop) -> tuple[int, float]:
-    """Returns how many contacts push and the force (N) on the tool."""
+    """Returns the number of contacts that push and their force on the tool, N."""
     parts, root = loop.haptic.loop, loop.context
     diagram = loop.haptic.diagram
     contacts = diagram.GetOutputPort("contacts").Eval(root)

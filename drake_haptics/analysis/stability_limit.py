@@ -20,13 +20,13 @@ class StabilityLimit:
     """The largest value at which a loop is stable.
 
     Attributes:
-        value: Infinite where no value up to `highest` is unstable; 0 where none down
-            to `lowest` is stable.
-        lowest: The range that was searched.
-        highest: Its upper end.
+        value: The largest stable value; infinite where no value up to `highest` is
+            unstable, 0 where none down to `lowest` is stable.
+        lowest: Lower end of the range that was searched.
+        highest: Upper end of that range.
         evaluations: Number of values that were tried.
-        is_crossing: Whether growth passes 1 there; False where it cannot be told
-            beyond, or there is no limit.
+        is_crossing: Whether growth passes 1 at the value; False where the growth beyond
+            is not known, or there is no limit.
     """
 
     value: float
@@ -40,7 +40,8 @@ def calc_growth(eigenvalues: np.ndarray) -> float:
     """Returns by how much the fastest growing motion is multiplied in a period.
 
     Args:
-        eigenvalues: (n,) of one period. Those at 1, to 1e-6, are neutral and left out.
+        eigenvalues: (n,) eigenvalues of one period. Those at 1, to 1e-6, are neutral
+            and left out.
     """
     return float(np.abs(drop_neutral(eigenvalues)).max(initial=0.0))
 
@@ -48,8 +49,8 @@ def calc_growth(eigenvalues: np.ndarray) -> float:
 def drop_neutral(eigenvalues: np.ndarray) -> np.ndarray:
     """Returns eigenvalues (n,) with 0 instead of those at 1, to 1e-6.
 
-    They belong to what has no place of its own: the adhesion points of friction, a
-    balance of energy, the sign of a quaternion.
+    Those belong to states without a place of their own: the adhesion points of
+    friction, a balance of energy, the sign of a quaternion.
     """
     return np.where(np.abs(eigenvalues - 1.0) > NEUTRAL, eigenvalues, 0.0)
 
@@ -68,15 +69,15 @@ def find_stability_limit(
     A loop that becomes stable again within a factor of two is not seen.
 
     Args:
-        growth: How much motions grow per period at a value, as `calc_growth` says;
-            NaN where it cannot be told, which counts as unstable.
+        growth: Function of a value that returns the growth per period, as `calc_growth`
+            does; NaN where it is not known, which counts as unstable.
         start: First value to try, in the range.
-        lowest: Above 0.
-        highest: Above `lowest`.
+        lowest: Lower end of the range, above 0.
+        highest: Upper end of the range, at least `lowest`.
         relative_tolerance: Relative tolerance of the limit.
 
     Raises:
-        ValueError: The range is not one, or `start` is not in it.
+        ValueError: The range is empty or not above 0, or `start` is not in it.
     """
     if not 0.0 < lowest <= start <= highest:
         raise ValueError(
@@ -107,7 +108,7 @@ def find_stability_limit(
             if unstable == math.log(lowest):
                 return answer(0.0)
             stable = max(unstable - math.log(2.0), math.log(lowest))
-    # Where a value cannot be evaluated halving is all that is left.
+    # Where a value cannot be evaluated, halving is all that is left.
     while math.isinf(excess(unstable)) and unstable - stable > relative_tolerance:
         middle = (stable + unstable) / 2.0
         if excess(middle) < 0.0:
@@ -120,8 +121,8 @@ def find_stability_limit(
     return answer(math.exp(root), is_crossing=True)
 
 
-# So small that nothing but the linear part of the motion is seen, and so large that
-# round-off is not: relative to states of meters, radians and newtons.
+# So small that only the linear part of the motion is seen, and so large that round-off
+# is not: relative to states of meters, radians and newtons.
 _DISTURBANCE = 1e-7
 # A mode is followed until it is so many times larger or smaller than it began.
 _FOLLOWED = 1e4
@@ -145,8 +146,8 @@ def measure_growth(
     Args:
         make_simulator: Returns a simulator that starts at the context it is given.
         context: Root context, at an equilibrium.
-        eigenvectors: The mode's right and left one, (n,) each, over [x_c; all discrete
-            groups], of any length.
+        eigenvectors: Right and left eigenvector of the mode, (n,) each, over [x_c; all
+            discrete groups], of any length.
         period_s: T, s.
         periods: Largest number of periods to simulate.
 
@@ -171,7 +172,7 @@ def measure_growth(
         if not 1.0 / _FOLLOWED < amplitude / math.exp(logarithms[0]) < _FOLLOWED:
             break
         logarithms.append(math.log(amplitude))
-    # The first few may hold what else the disturbance has set off.
+    # The first few may hold other motions that the disturbance has set off.
     followed = logarithms[len(logarithms) // 10 :]
     if len(followed) < _FEWEST_PERIODS:
         raise ValueError(

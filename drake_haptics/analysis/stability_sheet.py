@@ -39,14 +39,14 @@ def draw_sheet(
     bounds: HeldBounds,
     gains: tuple[float, float],
 ) -> Figure:
-    """Draws on a figure of its own, which no window shows.
+    """Draws the sheet on a new figure, which no window shows.
 
     Args:
-        title: Stands above all panels.
+        title: Title above all panels.
         linearization: Linear map of one tick.
         limits: Limits of the coupling's stiffness.
-        frequencies_Hz: (n,), rising, Hz.
-        damping_usage: (n,), how much of the damping passivity needs at each.
+        frequencies_Hz: (n,) frequencies, rising, Hz.
+        damping_usage: (n,) share of the damping that passivity needs at each frequency.
         map: Growth over stiffness and damping; without it its panel is left out.
         bounds: Theoretical bounds of the device in its hand, for the map.
         gains: K, N/m, and B, N·s/m, of the scene, for the map.
@@ -75,7 +75,7 @@ def draw_sheet(
 
 
 def _plot_usage(frequencies_Hz: np.ndarray, usage: np.ndarray, axes: Axes) -> None:
-    """Draws how much damping passivity needs of what there is, over frequency."""
+    """Draws the share of the available damping that passivity needs."""
     axes.plot(
         frequencies_Hz,
         usage,

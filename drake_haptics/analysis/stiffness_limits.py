@@ -28,7 +28,7 @@ from drake_haptics.scene.schema import CouplingParameters
 Kind = Literal["translation", "rotation"]
 Against = Literal["this contact", "a rigid wall"]
 
-# Of a coupling, by kind: stiffness and damping.
+# Names of a coupling's stiffness and damping, by kind.
 _GAINS = {
     "translation": ("stiffness_N_per_m", "damping_Ns_per_m"),
     "rotation": ("rotational_stiffness_Nm_per_rad", "rotational_damping_Nms_per_rad"),
@@ -47,16 +47,16 @@ class StiffnessLimits:
 
     Attributes:
         kind: Kind of the stiffness.
-        against: What the tool touches: the contact in which it is held, which gives
-            way; or a wall that holds it still, the worst that a device can feel
+        against: Name of what the tool touches: the contact in which it is held, which
+            gives way; or a wall that holds it still, the worst that a device can feel
             (`HeldScene.against_rigid_wall`).
-        stiffness: The scene's.
-        damping: The scene's, N·s/m or N·m·s/rad.
-        eigenvalue: Where an eigenvalue of one tick reaches magnitude 1; infinite
-            where none does up to 10⁴ times the scene's; 0 where already 10⁻⁴ of the
-            scene's is unstable.
-        simulated: Where a small disturbance no longer dies out in simulation; NaN
-            where there is nothing to compare.
+        stiffness: Stiffness in the scene.
+        damping: Damping in the scene, N·s/m or N·m·s/rad.
+        eigenvalue: Stiffness at which an eigenvalue of one tick reaches magnitude 1;
+            infinite where none does up to 10⁴ times the scene's; 0 where already 10⁻⁴
+            of the scene's is unstable.
+        simulated: Stiffness at which a small disturbance no longer dies out in
+            simulation; NaN where there is nothing to compare.
         one_axis: The exact limit of one axis with the least inertia and damping that
             device and hand have in any direction where they hold the tool, against a
             rigid wall (`SampledWall`).
@@ -99,10 +99,10 @@ def find_stiffness_limits(
     against: Against = "this contact",
     progress: Callable[[float], None] | None = None,
 ) -> StiffnessLimits:
-    """Finds the largest stable stiffness of a held scene's coupling in three ways.
+    """Finds the largest stable stiffness of a held scene's coupling in four ways.
 
     Args:
-        held: The scene, with the gains that stay.
+        held: The held scene, whose other gains stay.
         kind: Kind of the stiffness that is raised.
         against: Name of the body that the tool touches.
         progress: Called with the share that is done, in [0, 1].
@@ -167,7 +167,7 @@ def find_stiffness_limits(
 
 
 def _find_simulated(growth: Callable[[float], float], near: float) -> float:
-    """Returns where simulated growth passes 1, or NaN if it does not near a value."""
+    """Returns where simulated growth passes 1, or NaN if that is not near a value."""
 
     def excess(logarithm: float) -> float:
         return growth(math.exp(logarithm)) - 1.0
@@ -186,7 +186,7 @@ def _replace(held: HeldScene, name: str, value: float) -> CouplingParameters:
 def _make_wall(
     held: HeldScene, kind: Kind, handle: HeldHandle, damping: float
 ) -> SampledWall:
-    """Returns the coupling as a wall on one axis of what holds the tool."""
+    """Returns the coupling as a wall on one axis of the device and hand."""
     period_s = 1.0 / held.scene.device.rate_hz
     if kind == "translation":
         return SampledWall(

@@ -35,14 +35,15 @@ _PERIODS = 10.0
 
 @dataclass(frozen=True)
 class DelayBounds:
-    """The largest stiffness over the delay t_d, of which a stall is one.
+    """The largest stiffness over the delay t_d, which a stall adds to.
 
     Attributes:
         wall: The wall that was given.
         delays_s: t_d on top of the hold's half period, s, (n,).
         exact: The largest stable K by eigenvalues, N/m, (n,).
         law: The law of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).
-        passive: The largest passive K with the same B, (n,); 0 where B alone is not.
+        passive: The largest passive K with the same B, (n,); 0 where B alone is not
+            passive.
         largest_delay_s: The longest delay with which `wall` is stable, s.
     """
 
@@ -56,7 +57,7 @@ class DelayBounds:
     __repr__ = one_line
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the three over the delay, and the wall as a point."""
+        """Draws the three bounds over the delay, and the wall as a point."""
         axes = find_axes(axes)
         delays_ms = 1e3 * self.delays_s
         axes.semilogy(delays_ms, self.exact, label="stable (exact)")
@@ -83,8 +84,8 @@ def calc_delay_bounds(
     """Calculates how stiff a wall may be at each delay.
 
     Args:
-        wall: All but its delay and its stiffness, which are those of the point that
-            is drawn and of `largest_delay_s`.
+        wall: The wall. Its delay and stiffness are those of the point that is drawn;
+            `largest_delay_s` is found for its stiffness.
         delays_s: Delays, s. Defaults to 0 to 10 periods.
 
     Raises:

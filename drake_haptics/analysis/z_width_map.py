@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 # Points of a line of theory.
 _FINE = 200
-# How much of the color a region has.
+# Opacity of a region.
 _PALE = 0.25
 
 
@@ -155,9 +155,9 @@ class ZWidth:
         damping: B, (nB,), rising, N·s/m.
         spectral_radius: (nB, nK), of one period; stable below 1; NaN where the point
             could not be evaluated.
-        passive_damping: (nB, nK), what device and hand must damp for the point to be
-            passive, N·s/m; NaN where that was not said.
-        reasons: Why a point could not be evaluated, by (row, column).
+        passive_damping: (nB, nK), damping that device and hand must have for the point
+            to be passive, N·s/m; NaN where unknown.
+        reasons: Reasons why points could not be evaluated, by (row, column).
     """
 
     stiffness: np.ndarray
@@ -171,8 +171,8 @@ class ZWidth:
     def largest_stable_stiffness(self) -> np.ndarray:
         """Returns for each damping the stiffness below which all of the map is stable.
 
-        Where the spectral radius first crosses 1, interpolated along K between two
-        points; as exact as the grid is fine.
+        That is where the spectral radius first crosses 1, interpolated along K between
+        two points; as exact as the grid is fine.
 
         Returns:
             (nB,), N/m. Infinite where the map is stable to its end. NaN where it cannot
@@ -191,9 +191,9 @@ class ZWidth:
         """Draws damping over stiffness, the stable region shaded.
 
         Args:
-            axes: Where; new ones if not given. Logarithmic where the grid is.
-            bounds: Draws the lines of theory for this damping, period and delay.
-            gains: K and B to mark: those of the scene.
+            axes: Axes to draw on; new ones if not given. Logarithmic where the grid is.
+            bounds: Damping, period and delay whose lines of theory are drawn.
+            gains: K and B to mark, those of the scene.
 
         Raises:
             ValueError: The map has only one stiffness or one damping.
@@ -242,7 +242,7 @@ class ZWidth:
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> ZWidth:
-        """Returns the map of which `to_dict` made this."""
+        """Returns the map that `to_dict` was called on."""
         return ZWidth(
             stiffness=np.array(data["stiffness"], dtype=float),
             damping=np.array(data["damping"], dtype=float),
@@ -283,12 +283,13 @@ def calc_z_width(
     again.
 
     Args:
-        evaluate: Of K and B. Returns ``spectral_radius``, the growth of the fastest
-            growing motion in one period, and, if it knows it, ``passive_damping``, the
-            physical damping that passivity needs. A motion that nothing acts on, as
-            that of a free body, has growth 1 and is left out by it. A ValueError of
-            it, as where there is no equilibrium, leaves the point open. It must pickle:
-            a function of a module, a partial of one, or a callable dataclass.
+        evaluate: Function of K and B. Returns ``spectral_radius``, the growth of the
+            fastest growing motion in one period, and, if it knows it,
+            ``passive_damping``, the physical damping that passivity needs. A motion
+            that nothing acts on, as that of a free body, has growth 1 and must be left
+            out. A ValueError, as where there is no equilibrium, leaves the point open.
+            It must pickle: a function of a module, a partial of one, or a callable
+            dataclass.
         stiffness: K, (nK,), rising, evenly or by a factor.
         damping: B, (nB,), likewise.
         executor: See `run_study`.
@@ -330,7 +331,7 @@ class _Point:
     evaluate: Callable[[float, float], Mapping[str, float]]
 
     def __call__(self, task: list[float]) -> dict[str, Any]:
-        """Returns what is known of (K, B), or the reason why nothing is."""
+        """Returns the results for (K, B), or the reason why there are none."""
         try:
             found = self.evaluate(*task)
         except ValueError as error:

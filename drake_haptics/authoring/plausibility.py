@@ -38,15 +38,15 @@ from drake_haptics.systems.contact.contact_query import ContactObject, ContactQu
 
 # A tool is held in one hand.
 _LARGEST_USUAL_TOOL_M = 1.0
-# So many vertices of the tool are looked at.
+# Largest number of the tool's vertices that are checked.
 _VERTICES = 16
 
 
 def check_plausibility(haptic: HapticDiagram) -> list[str]:
-    """Returns what is probably not meant in a scene, in sentences.
+    """Returns sentences about what is probably not intended in a scene.
 
     Args:
-        haptic: The scene, built.
+        haptic: Diagram of the scene.
     """
     return [
         *_question_sizes(haptic),
@@ -64,7 +64,7 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
 
 
 def _question_sizes(haptic: HapticDiagram) -> list[str]:
-    """Asks for the unit of what is unlike anything that a hand touches."""
+    """Asks for the unit of meshes whose size is unlike anything that a hand touches."""
     scene = haptic.scene
     objects = zip(scene.environment, haptic.environment, strict=True)
     sentences = [
@@ -96,7 +96,7 @@ def _question_size(
 def _question_clearance(haptic: HapticDiagram) -> list[str]:
     """Asks about a tolerance or skin wider than the room that objects leave the tool.
 
-    Its way is that of the scene's hand, with a device of your own as well.
+    The tool is moved along the path of the scene's hand, with your own device as well.
     """
     scene, tool = haptic.scene, haptic.tool.core
     objects = [
@@ -136,7 +136,7 @@ def _question_origin(haptic: HapticDiagram) -> list[str]:
     """Asks about a tool that is not where its mesh has its origin.
 
     The coupling pulls at the origin: with a long lever to the hand its force is mostly
-    torque, and what it pulls at is light.
+    torque, and the apparent mass there is small.
     """
     beside_m = find_origin_beside(haptic.tool.mesh)
     if beside_m is None:
@@ -204,9 +204,9 @@ def _calc_gap(p_WT: np.ndarray, X_WO: RigidTransform, part: Decomposition) -> fl
     """Returns the least gap between boxes of points and an object's box, m.
 
     Args:
-        p_WT: (n, k, 3) points; of each k the box is taken, in the object's frame.
+        p_WT: (n, k, 3) points; each k of them get a box, along the object's axes.
         X_WO: Pose of the object.
-        part: Its mesh.
+        part: Pieces of the object's mesh.
     """
     low, high = _find_box(part.mesh.vertices)
     R_OW = X_WO.rotation().matrix().T
@@ -250,10 +250,10 @@ def _question_device(haptic: HapticDiagram) -> list[str]:
 
 
 def question_start(haptic: HapticDiagram) -> list[str]:
-    """Returns in sentences where the tool starts inside an object, if it does.
+    """Returns sentences about where the tool starts inside an object, if it does.
 
     Args:
-        haptic: The scene, built; a device's handle is taken where it is now.
+        haptic: Diagram of the scene; a device's handle is taken where it is now.
     """
     scene = haptic.scene
     if haptic.backend is None:
@@ -292,8 +292,8 @@ def question_start(haptic: HapticDiagram) -> list[str]:
 def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
     """Returns how deep the tool is in each object, m; 0 where there is no contact.
 
-    The run's own query is asked, in a Context of its own, so that the depth is that
-    which the run begins with; where the law of contact has none, one like it.
+    The run's own query is evaluated, in a Context of its own, so that the depth is the
+    one that the run begins with; a law of contact without a query gets a similar one.
     """
     penalty = haptic.loop.penalty
     query = _make_query(haptic) if penalty is None else penalty.contact_query

@@ -27,7 +27,7 @@ from drake_haptics.systems.arm.hand_impedance import NOMINAL_GRIP
 
 _PRESS_N = 2.0
 _LARGEST_TOOL_M = 1.0
-# Beyond, coordinates are too coarse for contacts of micrometers.
+# In larger environments coordinates are too coarse for contacts of micrometers.
 _LARGEST_ENVIRONMENT_M = 1e3
 _SMALLEST_EXTENT_M = 2e-3
 # The path keeps well inside a workspace of 12 cm radius.
@@ -38,7 +38,7 @@ _LARGEST_RISE_M = 0.03
 _CIRCLE_POINTS = 16
 _APPROACH_S = 1.5
 _CIRCLE_STEP_S = 0.4
-# What nobody feels is left out of a scene that people read: a nanometer, a microsecond.
+# Digits that nobody feels are left out of a scene: a nanometer, a microsecond.
 _DECIMALS_M = 9
 _DECIMALS_S = 6
 
@@ -59,7 +59,7 @@ def make_scene_for_meshes(
 
     Args:
         tool_path: Mesh of the tool.
-        environment_path: Mesh of what it meets.
+        environment_path: Mesh of the environment.
         tool_scale: Meters per unit of the tool's file.
         environment_scale: Meters per unit of the environment's file.
 

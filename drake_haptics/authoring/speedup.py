@@ -8,11 +8,11 @@ from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.profiling import Part
 
-# Parts that take less of what a tick may take are not worth a change.
+# Parts that take a smaller share of what a tick may take are not worth a change.
 _WORTH_IT = 0.1
-# Of the period; a loop whose ticks usually take more misses many.
+# Share of the period; a loop whose ticks usually take more misses many.
 _MAY_TAKE = 0.8
-# One of the parts that effects add, and what takes it away.
+# Parts that effects add, one for each, and the key that takes it away.
 _EFFECTS = {
     "force_shading": "effects.shading",
     "stick_slip_friction": "effects.friction",
@@ -22,15 +22,15 @@ _EFFECTS = {
 
 
 def suggest_speedup(parts: Iterable[Part], scene: Scene) -> str | None:
-    """Returns which key helps most where the ticks of a run take too long.
+    """Names the key that helps most where the ticks of a run take too long.
 
     Args:
-        parts: Of a tick, as `explain_tick` gives them.
-        scene: That ran.
+        parts: Parts of a tick, as `explain_tick` returns them.
+        scene: Scene that ran.
 
     Returns:
-        A sentence; None where a tick takes less than four fifths of its period and
-        than `device.tick_budget_us`, or no key makes a part less that takes much.
+        A sentence; None where a tick takes less than four fifths of its period and than
+        `device.tick_budget_us`, or no key shortens a part that takes much.
     """
     costs_us = {part.name: part.mean_us for part in parts}
     most_us = _MAY_TAKE * 1e6 / scene.device.rate_hz
@@ -48,12 +48,11 @@ def find_key_that_helps(costs_us: Mapping[str, float], scene: Scene) -> str | No
     """Returns what to change in a scene so that its costliest part costs less.
 
     Args:
-        costs_us: What parts of a tick take, by the names of their systems, µs; those
-            that are known.
-        scene: That runs.
+        costs_us: Times of the known parts of a tick, by the names of their systems, µs.
+        scene: Scene that runs.
 
     Returns:
-        A sentence, or None where nothing that a key makes less takes much.
+        A sentence, or None where no key shortens a part that takes much.
     """
     costs_us = {name: us for name, us in costs_us.items() if _find_key(name, scene)}
     if not costs_us:
@@ -69,7 +68,7 @@ def find_key_that_helps(costs_us: Mapping[str, float], scene: Scene) -> str | No
 
 
 def _find_key(name: str, scene: Scene) -> str | None:
-    """Returns the key that makes a part take less, and how it does."""
+    """Returns the key that shortens a part, and how it does."""
     if name in ("contact_clustering", "penalty_force"):
         if scene.contact.clustering == "shared":
             return (

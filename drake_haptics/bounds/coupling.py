@@ -35,12 +35,13 @@ class HeldHandle:
     """Mass, damping and stiffness of device and hand together, at the handle.
 
     Attributes:
-        mass_kg: The least in any direction, kg.
+        mass_kg: Least mass in any direction, kg.
         damping_Ns_per_m: Physical damping, N·s/m.
-        inertia_kgm2: The least about any axis, kg·m².
-        rotational_damping_Nms_per_rad: N·m·s/rad.
-        stiffness_N_per_m: Of the hand's spring, N/m.
-        rotational_stiffness_Nm_per_rad: N·m/rad.
+        inertia_kgm2: Least inertia about any axis, kg·m².
+        rotational_damping_Nms_per_rad: Physical damping of rotation, N·m·s/rad.
+        stiffness_N_per_m: Stiffness of the hand's spring, N/m.
+        rotational_stiffness_Nm_per_rad: Stiffness of the hand's spring in rotation,
+            N·m/rad.
     """
 
     mass_kg: float
@@ -56,9 +57,9 @@ class BrokenBound:
     """A bound that a coupling breaks.
 
     Attributes:
-        key: Of the value to be changed, one of `SpringAndDamper`.
-        words: What comes of it and what to do, without symbols.
-        sentence: Which value, which bound by which law, what to change.
+        key: Name of the value to be changed, one of `SpringAndDamper`.
+        words: Consequence and remedy, without symbols.
+        sentence: Sentence with the value, the bound and its law, and the remedy.
     """
 
     key: str
@@ -108,7 +109,7 @@ def find_broken_bounds(
 
     Args:
         coupling: K and B of both kinds.
-        handle: What they act on.
+        handle: Handle that they act on.
         period_s: The tick T, s.
         delay_s: Delay t_d on top of the hold's half period, s.
 

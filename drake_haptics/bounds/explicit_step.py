@@ -33,9 +33,9 @@ def calc_explicit_stiffness(mass: float, damping: float, step_s: float) -> float
 def calc_spatial_mobility(plant: MultibodyPlant, body: RigidBody) -> np.ndarray:
     """Returns J M⁻¹ Jᵀ (6, 6) of a body's frame at the plant's default positions.
 
-    What a spatial force [τ; f] at the body's origin does to its spatial acceleration,
-    both in the world; zero where it cannot move. Of a free body it is the same
-    everywhere but for its orientation.
+    It turns a spatial force [τ; f] at the body's origin into the body's spatial
+    acceleration, both in the world; zero where it cannot move. For a free body it is
+    the same everywhere but for its orientation.
     """
     if plant.num_velocities() == 0:
         return np.zeros((6, 6))
@@ -52,13 +52,13 @@ def calc_spatial_mobility(plant: MultibodyPlant, body: RigidBody) -> np.ndarray:
 def calc_largest_point_mobility(
     plant: MultibodyPlant, body: RigidBody, p_BV: np.ndarray
 ) -> float:
-    """Returns what the most mobile of some points of a body makes of a force, 1/kg.
+    """Returns the largest mobility of some points of a body, 1/kg.
 
     Its inverse is the smallest apparent mass that a force meets at any of the points in
     any direction.
 
     Args:
-        plant: Of the body, in its default positions.
+        plant: Plant of the body, in its default positions.
         body: The body.
         p_BV: (n, 3) points in its frame, m.
     """
@@ -85,12 +85,12 @@ def check_explicit_stiffness(
     """Checks a spring and damper against `calc_explicit_stiffness`.
 
     Args:
-        what: Whose gains they are, for the sentence.
-        stiffness: K.
-        damping: B.
-        mobilities: Of the bodies at either end, 1/kg or 1/(kg·m²).
+        what: Name of what has these gains, for the sentence.
+        stiffness: Stiffness K.
+        damping: Damping B.
+        mobilities: Mobilities of the bodies at either end, 1/kg or 1/(kg·m²).
         step_s: h, s.
-        units: Of the stiffness and of the mass.
+        units: Units of the stiffness and of the mass.
 
     Returns:
         A sentence that says which value, which bound, and what to change; None where

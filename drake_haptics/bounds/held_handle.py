@@ -30,7 +30,7 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
 
     Args:
         scene: Gains, grip and rate.
-        device: What `make_simulated_device` returned for it.
+        device: Simulated device of the scene, from `make_simulated_device`.
 
     Returns:
         A sentence for each bound that is broken, as `check_coupling` has it.
@@ -43,7 +43,7 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
 def check_real_coupling(scene: Scene) -> list[str]:
     """Checks a scene's coupling on a real device of the scene's preset.
 
-    It is held to what the device is rated for and, where the preset has a model, to
+    The coupling is held to the device's ratings and, where the preset has a model, to
     the bounds on its twin. Nobody knows how firmly a real device is held: the bounds
     are those in the loosest grip.
 
@@ -51,7 +51,8 @@ def check_real_coupling(scene: Scene) -> list[str]:
         scene: Gains, preset and rate.
 
     Returns:
-        A sentence for each rating that is exceeded, then as `check_scene_coupling`.
+        A sentence for each rating that is exceeded, then those of
+        `check_scene_coupling`.
 
     Raises:
         SceneError: There is no such preset, or its model is no arm.
@@ -64,12 +65,12 @@ def check_real_coupling(scene: Scene) -> list[str]:
 def find_real_bounds(
     scene: Scene, preset: DevicePreset, loosely_held: HeldHandle | None
 ) -> list[BrokenBound]:
-    """Returns what `check_real_coupling` checks.
+    """Returns the bounds that a coupling breaks on a real device.
 
     Args:
         scene: Gains and rate.
-        preset: The scene's.
-        loosely_held: What `calc_loosely_held` returned for them.
+        preset: Preset of the scene.
+        loosely_held: Handle that `calc_loosely_held` returned for them.
     """
     found = find_exceeded_ratings(scene.coupling, preset)
     if loosely_held is not None:
@@ -87,8 +88,8 @@ def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
     """Returns the held handle of a preset's arm at its default angles, loosely gripped.
 
     Args:
-        scene: Its tool is grasped.
-        preset: The scene's; None is returned for one without a model.
+        scene: Scene with the grasp of the tool.
+        preset: Preset of the scene; None is returned for one without a model.
 
     Raises:
         SceneError: Its model is no arm.
@@ -112,7 +113,7 @@ def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
 
 
 def calc_force_delay(scene: Scene) -> float:
-    """Returns how late a scene's simulated device shows a wrench, s.
+    """Returns the delay with which a scene's simulated device shows a wrench, s.
 
     That is the delay t_d on top of the hold, as the laws of stability count it.
     """
@@ -127,8 +128,8 @@ def calc_scene_handle(
 
     Args:
         scene: Names preset, grip and grasp.
-        device: What `make_simulated_device` returned for it.
-        root: Where the arm stands; at its default angles if not given.
+        device: Simulated device of the scene, from `make_simulated_device`.
+        root: Context with the arm's position; at its default angles if not given.
     """
     plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
     handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
@@ -153,13 +154,13 @@ def calc_held_handle(
 
     Where all joints are free, a force at the point meets the apparent inertia
     (J M⁻¹ Jᵀ)⁻¹, and in the same way damping and stiffness of joints and hand. The
-    least of it in any direction is the worst case for a coupling. Far from the hand all
-    of it is less: the handle turns.
+    least of each in any direction is the worst case for a coupling. Far from the hand
+    all three are less: the handle turns.
 
     Args:
         plant: The arm, its hand welded to it.
         handle: The body that is held at its origin.
-        grip: Its spring and damper count; None where the arm is free.
+        grip: Grip whose spring and damper count; None where the arm is free.
         p_HQ: The point, (3,), m: where a coupling pulls. The origin if not given.
         context: The plant's; at the default angles if not given.
     """

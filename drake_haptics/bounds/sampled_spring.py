@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-# Hands that feel for something are slower.
+# Hands that explore by touch are slower.
 _FASTEST_HAND_M_PER_S = 1.0
 
 
@@ -35,7 +35,8 @@ def calc_passive_stiffness(
 ) -> float:
     """Returns the stiffness K up to which a sampled K and B are passive.
 
-    That of `calc_passive_damping`, solved for K. Zero where B alone is not passive.
+    The bound of `calc_passive_damping`, solved for K. Zero where B alone is not
+    passive.
     """
     left = held_damping - abs(damping)
     return max(0.0, left) / _calc_age(period_s, delay_s)
@@ -58,7 +59,7 @@ def calc_stable_delay(
     """Returns the delay t_d below which the sampled loop is stable, s.
 
     t_d < (b + B)/K - T/2, the law of `calc_stable_stiffness` solved for the delay. It
-    is also how long a loop may stall: until the next tick the force is older by so
+    is also how long a loop may stall: until the next tick the force is older by that
     much. Zero where the loop is unstable without any, infinite without stiffness.
     """
     if stiffness == 0.0:
@@ -75,7 +76,7 @@ def calc_quantized_stiffness(
     Coulomb friction for rounding.
 
     Args:
-        held_damping: b.
+        held_damping: Damping b of device and hand, N·s/m or N·m·s/rad.
         friction: f_c, Coulomb friction at the handle, N or N·m.
         period_s: T, s.
         resolution: Δ, the step of the position, m or rad.
@@ -116,8 +117,9 @@ def calc_returnable_energy(
 ) -> float:
     """Returns the energy that a passive virtual world can return to a device, J.
 
-    That of its springs, F²/(2 K) each, of the tool's motion, and of its weight. It is
-    the `reserve_J` of a `PassivityControl`: a larger balance comes of dissipation.
+    That is the energy of its springs, F²/(2 K) each, of the tool's motion, and of its
+    weight. It is the `reserve_J` of a `PassivityControl`: a larger balance comes of
+    dissipation.
 
     Args:
         springs: The largest load and the stiffness of each, in N and N/m or N·m and
@@ -131,7 +133,7 @@ def calc_returnable_energy(
 
 
 def _calc_age(period_s: float, delay_s: float) -> float:
-    """Returns how old a sample counts for passivity, s."""
+    """Returns the age at which a sample counts for passivity, s."""
     # A delay of whole periods may be a round-off above them.
     next_whole_s = math.ceil(delay_s / period_s - 1e-9) * period_s
     return 0.5 * (period_s + delay_s + next_whole_s)

@@ -53,7 +53,7 @@ def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
 
     Args:
         stderr: Whether to write to stderr instead of stdout.
-        markup: Whether `[bold]` and the like mean something in what is printed.
+        markup: Whether `[bold]` and the like are markup in the printed text.
     """
     console = _Terminal(highlight=False, markup=markup, stderr=stderr)
     if console.is_terminal:
@@ -62,7 +62,7 @@ def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
 
 
 def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
-    """Returns where a person opens a page, and how over ssh.
+    """Returns lines that say where to open a page, and how over ssh.
 
     Args:
         url: Address of the page.
@@ -92,8 +92,8 @@ _LINE_EVERY_S = 10.0
 def progress_bar() -> Iterator[Callable[[str, float], None]]:
     """Shows a bar on stderr while the context lasts, or lines if that is no terminal.
 
-    Work of a few seconds writes no line. What takes longer writes one when another part
-    of it begins, and one every ten seconds.
+    Work of a few seconds writes no line. Longer work writes one when its next part
+    begins, and one every ten seconds.
 
     Yields:
         A function to call with the current work and the share that is done, in [0, 1].

@@ -26,7 +26,8 @@ class ExitCode(IntEnum):
     Attributes:
         DONE: The command is done. `run`, `device` and `decompose --show` end this way
             at Ctrl-C too.
-        UNUSABLE: What was given cannot be used, or the system refuses a file or a port.
+        UNUSABLE: Something given cannot be used, or the system refuses a file or a
+            port.
         WRONG_CALL: There is no such command, option or value.
         NO: The command is done, and the answer is no: a run became unstable or ended
             with its device at fault, two logs differ, no setting holds the budget.
@@ -82,7 +83,7 @@ def failures_in_words(debug: bool) -> Iterator[None]:
         debug: Whether a traceback comes before the message.
 
     Raises:
-        click.ClickException: With message and exit code.
+        click.ClickException: Something failed; it has the message and the exit code.
     """
     with _warnings_in_lines(debug), _log_in_lines():
         try:
@@ -154,13 +155,13 @@ def _describe_defect(error: BaseException) -> str:
 
 @contextmanager
 def naming(option: str) -> Iterator[None]:
-    """Puts the option that gave it before what the library says of an argument.
+    """Puts the option before the library's message about its argument.
 
     Args:
         option: The option as the user gives it, or several.
 
     Raises:
-        HapticsError: The library raised one, whose words name no option.
+        HapticsError: The library raised one, whose message names no option.
     """
     try:
         yield
@@ -185,7 +186,7 @@ def _warnings_in_lines(debug: bool) -> Iterator[None]:
 
 
 class _LineHandler(logging.Handler):
-    """Writes what is logged as a line each, once."""
+    """Writes each log record as one line, once."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)
@@ -215,9 +216,9 @@ def warn(words: str) -> None:
     click.secho(f"Warning: {' '.join(words.split())}", fg="yellow", err=True)
 
 
-# What ends a program from a keyboard, a script or a service, and with its terminal.
+# Signals that end a program from a keyboard, a script or a service, or its terminal.
 _NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-# Of a person who presses Ctrl-C ten times: one request, whose report is not to be lost.
+# Ctrl-C ten times in a row is one request, whose report must not be lost.
 _REPEATED_S = 2.0
 
 
@@ -225,12 +226,12 @@ _REPEATED_S = 2.0
 def lasting_interrupt(
     clock: Callable[[], float] = time.monotonic,
 ) -> Iterator[Callable[[], None]]:
-    """Makes Ctrl-C, SIGTERM and SIGHUP last until somebody ends for them.
+    """Keeps Ctrl-C, SIGTERM and SIGHUP pending until the loop has ended for them.
 
-    A `KeyboardInterrupt` is raised wherever the interpreter is just then. Where that
-    is in Python code that C++ has called, or in a destructor, it may be dropped, and a
-    device would go on with force. More of them within two seconds are the same one;
-    later ones are raised again, for what hangs.
+    A `KeyboardInterrupt` is raised wherever the interpreter is just then. Where that is
+    in Python code that C++ has called, or in a destructor, it may be dropped, and a
+    device would go on with force. Further signals within two seconds count as the same
+    one; later ones are raised again, in case the program hangs.
 
     Signals that are ignored, as in a script's background or under `nohup`, still are.
     Only the main thread may use it.
@@ -239,7 +240,7 @@ def lasting_interrupt(
         clock: Reads the time, s.
 
     Yields:
-        What a loop calls now and then: raises `KeyboardInterrupt` if there was one.
+        A function that a loop calls now and then: raises `KeyboardInterrupt` if asked.
     """
     asked_s: float | None = None
 

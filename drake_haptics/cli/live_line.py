@@ -23,15 +23,15 @@ class LiveLine:
     """Shows what a loop does, and never keeps it waiting.
 
     Only a thread of its own writes: at Ctrl-S, or where the connection to the terminal
-    hangs, a write does not return, and a loop that hangs leaves its last force on. A
-    line that the terminal does not take is followed by no other until it does. Where
-    the output is not a terminal nothing is written.
+    hangs, a write does not return, and a loop that hangs leaves its last force on. As
+    long as the terminal does not take a line, no other is written. Where the output is
+    not a terminal nothing is written.
 
     Args:
         console: Console to write to.
-        make_line: Called with the time since the last line, s; returns the next, of
-            parts between " · ", the most important first: the last ones are left out
-            where a terminal is narrow.
+        make_line: Function of the time since the last line, s, that returns the next
+            one, in parts between " · ", the most important first: the last ones are
+            left out where a terminal is narrow.
         clock: Reads the time, s.
     """
 
@@ -62,7 +62,7 @@ class LiveLine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Takes the line away."""
+        """Removes the line."""
         if self._shown:
             self._lines.put(None)
             self._thread.join(_END_S)

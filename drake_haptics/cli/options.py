@@ -57,7 +57,7 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --unit.
 
     Args:
-        what: Names the quantity in that unit, for --help.
+        what: Name of the quantity in that unit, for --help.
     """
     return click.option(
         "--unit",
@@ -89,7 +89,7 @@ def meshes_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --meshes FOLDER, of real meshes by their names.
 
     Args:
-        what: Says what is done with the meshes, for --help.
+        what: Sentence about what is done with the meshes, for --help.
     """
     return click.option(
         "--meshes",
@@ -125,7 +125,7 @@ def file_option(name: str, **settings: Any) -> Callable[[_Function], _Function]:
 def require_folder(
     _: click.Context, option: click.Parameter, file: str | Path | None
 ) -> str | Path | None:
-    """Returns the file of an option, so that no result is computed for nowhere.
+    """Returns the file of an option, checked before its result is computed.
 
     Raises:
         HapticsError: The file cannot be written, see `require_writable`.
@@ -207,7 +207,7 @@ def set_option(function: _Function) -> _Function:
 
 
 def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
-    """Returns a scene with what --set changes.
+    """Returns a scene with the changes of --set.
 
     Args:
         scene: A shipped scene's name, or a file.
@@ -224,10 +224,10 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
 
 
 def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
-    """Returns a scene with what --set changes; the same one where that is nothing.
+    """Returns a scene with the changes of --set; the same one if there are none.
 
     Raises:
-        HapticsError: It is no key, or an impossible value.
+        HapticsError: A setting names no key, or has an impossible value.
     """
     from drake_haptics.scene.settings import change_scene
 

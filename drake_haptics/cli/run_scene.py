@@ -57,7 +57,7 @@ def make_parts_table(parts: Sequence[Part]) -> Table:
 
 
 def describe_skin(speed_m_per_s: float) -> str:
-    """Returns above which speed a step skips the skin of contact.
+    """Says above which speed a step skips the skin of contact.
 
     Args:
         speed_m_per_s: Speed at which a step crosses the skin, m/s, see `HapticDiagram`.
@@ -139,7 +139,7 @@ def run_scene(
     """Runs a scene as the options of `run` say, and prints what came of it.
 
     Raises:
-        HapticsError: Two files are one.
+        HapticsError: Two options name one file.
         click.ClickException: The simulation became unstable, or the device is at fault
             at the end.
     """
@@ -216,10 +216,10 @@ def _open_page(port: int | None) -> socket.socket:
 
 
 def _explain_lock(files: dict[str, object]) -> str:
-    """Returns why nothing may be changed on the page of a run; empty if it may.
+    """Returns why nothing may be changed on the page of a run; else "".
 
     Args:
-        files: What is written of the run as one, by option.
+        files: Files that record the run as one whole, by option.
     """
     options = " and ".join(option for option, file in files.items() if file)
     if not options:
@@ -235,7 +235,7 @@ def _prepare(
     pieces: bool,
     record: Path | None,
 ) -> None:
-    """Sets the stage and says where it is to be seen."""
+    """Prepares the view and prints where it is shown."""
     if meshcat is not None:
         configure_camera(meshcat, haptic)
     visualizer = haptic.visualizer
@@ -253,7 +253,7 @@ def _prepare(
 def _write_recording(
     haptic: HapticDiagram, meshcat: Meshcat | None, file: Path
 ) -> None:
-    """Writes what was to be seen."""
+    """Writes the recording of the view."""
     if meshcat is None or haptic.visualizer is None:
         return
     haptic.visualizer.StopRecording()

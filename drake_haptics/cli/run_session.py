@@ -44,7 +44,7 @@ from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
-# Of what a person may have typed at once.
+# Enough for what a person may have typed at once.
 _BUFFER_BYTES = 4096
 
 
@@ -74,7 +74,7 @@ def build_scene(
 ) -> HapticDiagram:
     """Builds the diagram, with a bar while meshes are cut into pieces.
 
-    What the scene may do wrong is then written to stderr, a line each.
+    Warnings about the scene are then written to stderr, a line each.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
@@ -94,7 +94,7 @@ def _build(
     device: DeviceBackend | None,
     recorder: TickRecorder | None,
 ) -> HapticDiagram:
-    """Builds the diagram behind the bar."""
+    """Builds the diagram under the bar."""
     quiet = not console.is_terminal
     with Progress(console=console, transient=True, disable=quiet) as bars:
         tasks: dict[str, TaskID] = {}
@@ -118,11 +118,11 @@ class Session:
     Attributes:
         haptic: The diagram that ran last.
         scene: The scene at the end, with the changes of the page.
-        figures: As `RunStatistics.to_dict` has them, `contact_law`,
+        figures: Figures as `RunStatistics.to_dict` returns them, `contact_law`,
             `skin_speed_m_per_s` as of a `HapticDiagram` but None where it is infinite,
             and of a device under `device` those of `DeviceWatch.to_dict`.
         parts: Parts of a tick, if an explanation was asked for.
-        error: Why the run was stopped, if it was.
+        error: Error that stopped the run, if one did.
     """
 
     haptic: HapticDiagram
@@ -137,9 +137,9 @@ class PageOptions:
     """The page of a run.
 
     Attributes:
-        listener: Its port.
+        listener: Socket that listens on its port.
         name: Name of the scene.
-        locked: Why nothing may be changed on it; empty if it may.
+        locked: Reason why nothing may be changed on it; empty if changes are allowed.
         views: The members of `PICTURE_VIEWS` that it shows at first.
     """
 
@@ -165,16 +165,16 @@ def run_session(
 ) -> Session:
     """Opens the device, builds the scene and runs it under a status line.
 
-    What the run is warned of is written to stderr when it is over, a line each: a
-    terminal that takes nothing must not keep a loop waiting.
+    Warnings of the run are written to stderr when it is over, a line each: a terminal
+    that takes nothing must not keep a loop waiting.
 
     Args:
         console: Console for bars and the status line.
         scene: The scene to run.
-        device: Address of what is held; None for the scene's simulated one.
+        device: Address of the device that is held; None for the scene's simulated one.
         meshcat: Meshcat to draw in; None for no picture.
         page: Page that shows and steers the run, in real time; None for none.
-        prepare: Called with what was built before it runs, and the page's address.
+        prepare: Called with the diagram before it runs, and the page's address.
         duration_s: Simulated time, s; until Ctrl-C where None.
         energy: Whether to book energy, where the device is simulated.
         explained: Whether to explain the parts of a tick.
@@ -274,7 +274,7 @@ def _page_in_words() -> Iterator[None]:
 
 @contextmanager
 def _address_in_words(device: str | None) -> Iterator[None]:
-    """Says of a device that does not answer where it was looked for."""
+    """Names the address of a device that does not answer."""
     try:
         yield
     except DeviceError as error:
@@ -299,7 +299,7 @@ class _Onlookers:
         self.changes: ChangeLog | None = None
 
     def begin(self, haptic: HapticDiagram) -> None:
-        """Looks at a diagram from now on."""
+        """Observes a diagram from now on."""
         self._status.follow(haptic)
         if haptic.backend is not self._backend:
             self._backend, self._watch = haptic.backend, None
@@ -312,7 +312,7 @@ class _Onlookers:
         self._ends = [part.end_tick for part in looking if part is not None]
 
     def end_tick(self, context: Context) -> None:
-        """Looks at a tick."""
+        """Observes a tick."""
         self._check_interrupt()
         for end in self._ends:
             end(context)

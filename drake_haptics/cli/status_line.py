@@ -41,7 +41,7 @@ def describe_gate(
 
     Args:
         reading: The newest reading; None before the first.
-        remedy: Tells the person what to do about a fault.
+        remedy: Advice to the person about a fault.
     """
     if reading is None:
         return "[dim]silent[/]"
@@ -52,7 +52,7 @@ def describe_gate(
 
 
 def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) -> str:
-    """Returns as `describe_gate`, or that the force of a device has not set in yet.
+    """Returns `describe_gate`, or that the force of a device has not set in yet.
 
     Args:
         backend: The device that is held.
@@ -114,7 +114,7 @@ def describe_device(figures: Mapping[str, Any]) -> str:
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
 # millimeter.
 _ROUNDING_J = 1e-9
-# Lateness in the line is that of so many latest ticks.
+# Number of the latest ticks whose lateness is in the line.
 _LATEST = 1000
 
 
@@ -143,14 +143,14 @@ class StatusLine(LiveLine):
         self._silence = SilenceMonitor()
 
     def follow(self, haptic: HapticDiagram) -> None:
-        """Tells from now on of another diagram, with which the run goes on."""
+        """Describes from now on another diagram, with which the run goes on."""
         self._haptic = haptic
 
     def end_tick(self, context: Context) -> None:
         """Writes the line again, if it is time.
 
         Args:
-            context: The diagram's, after a tick.
+            context: Context of the diagram after a tick.
         """
         self._context = context
         self.update()
@@ -396,6 +396,6 @@ def make_driver_summary(figures: Mapping[str, Any]) -> Table:
 
 
 def _count_each(counts: Mapping[str, int]) -> str:
-    """Returns what there was and how often."""
+    """Returns each name with its count."""
     words = [f"{n} {name.lower().replace('_', ' ')}" for name, n in counts.items()]
     return ", ".join(words) or "none"

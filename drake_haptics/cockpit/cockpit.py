@@ -57,10 +57,10 @@ def make_setup_message(
     Args:
         changes: The scene, as it is and as its file has it.
         name: Name of the scene.
-        meshcat_url: Address of what the page shows.
-        handles: Names of who can hold the handle, with their labels.
+        meshcat_url: Address of the Meshcat that the page shows.
+        handles: Names of the possible holders of the handle, with their labels.
         site: Place of the scene's device, with its limits.
-        locked: Why nothing may be changed; empty if it may.
+        locked: Reason why nothing may be changed; empty if changes are allowed.
     """
     scene, file = changes.scene, changes.file
     return {
@@ -119,7 +119,7 @@ class Cockpit:
     """Shows a run on its page, and lets the page steer it.
 
     Attributes:
-        steering: Decides how the run goes on.
+        steering: Steering of the run, which decides how it goes on.
     """
 
     def __init__(
@@ -138,11 +138,11 @@ class Cockpit:
         Args:
             page: The page, which the caller closes.
             changes: The scene.
-            holding: Says who holds the handle.
+            holding: Holder of the handle.
             picture: The picture on the page.
-            advice: Judges the coupling of the scene.
+            advice: Checks of the scene's coupling.
             name: Name of the scene.
-            locked: Why nothing but the picture may be changed; empty if it may.
+            locked: Reason why only the picture may be changed; empty if all may be.
         """
         self.steering = Steering(changes, holding, picture, locked)
         self._page = page
@@ -152,13 +152,13 @@ class Cockpit:
         self._advice = advice
         self._name = name
         self._locked = locked
-        # When the page is to be told how things are, and when it was.
+        # Times at which the page is to be told the state next, and was told it last.
         self._tell_s, self._told_s = math.inf, -math.inf
         self._greeted: tuple[LiveKey, ...] = ()
         self._root: Context | None = None
-        # What is wrong with where the tool began.
+        # Complaints about where the tool began.
         self._start = ""
-        # How many stages of work are left out, and what would help.
+        # Number of stages of work that are left out, and the key that would help.
         self._shed, self._relief = 0, ""
         self._silence, self._looked_s = SilenceMonitor(), monotonic()
 
@@ -184,7 +184,7 @@ class Cockpit:
         self._haptic, self._statistics, self._pace = haptic, statistics, pace
         self._root = None
         self.steering.begin(haptic)
-        # Other effects draw, and are told, other things.
+        # Another diagram may have other effects to draw and to tell of.
         self._greeted = ()
         self._tell()
 
@@ -192,10 +192,10 @@ class Cockpit:
         """Notes a tick, talks with the page if it is time; to be called after a tick.
 
         Args:
-            context: The diagram's.
+            context: Context of the diagram.
 
         Returns:
-            Whether the segment is to end: `Steering.take_change` says for what.
+            Whether the segment is to end: `Steering.take_change` has the reason.
         """
         self._root = context
         self._page.note(
@@ -210,7 +210,7 @@ class Cockpit:
         return self.steering.end_tick(context, now_s)
 
     def _tell(self) -> None:
-        """Tells the page how things are, and if that is new what can be changed."""
+        """Tells the page the state, and what can be changed if that is new."""
         self._told_s, self._tell_s = monotonic(), math.inf
         if self._greeted != (keys := self._changes.list_keys()):
             self._greeted = keys
@@ -237,7 +237,7 @@ class Cockpit:
         self._page.tell("state", state)
 
     def _greet(self) -> None:
-        """Tells the page what there is to see and to change."""
+        """Tells the page what can be seen and changed."""
         greeting = make_setup_message(
             self._changes,
             name=self._name,
@@ -282,7 +282,7 @@ class Cockpit:
         self._shed = shed
 
     def _find_gate(self, reading: DeviceReading | None) -> int:
-        """Returns the index into `GATES` of what a reading tells."""
+        """Returns the index into `GATES` of a reading's state."""
         if reading is None:
             return SIMULATED
         taken = self._holding.taken

@@ -37,7 +37,7 @@ from drake_haptics.web.live_page import LivePage, look_from_the_front
 
 
 class Segments:
-    """Runs a scene, and what becomes of it on the cockpit's page."""
+    """Runs a scene, with the changes that are made on the cockpit's page."""
 
     def __init__(
         self,
@@ -50,8 +50,8 @@ class Segments:
 
         Args:
             haptic: Diagram of the cockpit's scene, with the backend that is held.
-            cockpit: Says what is to be otherwise.
-            holding: Says who holds the handle.
+            cockpit: Cockpit that steers the run.
+            holding: Holder of the handle.
             meshcat: Meshcat to draw in.
         """
         self._haptic = haptic
@@ -74,7 +74,7 @@ class Segments:
     ) -> HapticDiagram:
         """Runs until the time is over, or Ctrl-C; see `CockpitRun.run`."""
         left_s, context = duration_s, None
-        # Less than a tick is left of what round-off makes of whole ticks.
+        # Round-off leaves less than a tick after the last whole one.
         while left_s is None or left_s > 0.5 * self._haptic.period_s:
             try:
                 self._cockpit.begin(
@@ -116,8 +116,8 @@ class Segments:
         """Runs a segment.
 
         Returns:
-            What it ended for, None if the run is over; and where it ended, None where
-            it failed.
+            The change for which it ended, None if the run is over; and the context at
+            its end, None if it failed.
         """
         last: Context | None = None
 
@@ -147,11 +147,11 @@ class Segments:
     def _change(
         self, change: Change, last: Context | None
     ) -> tuple[HapticDiagram, Context]:
-        """Returns what runs next, and from where.
+        """Returns the next diagram, and the context that it starts from.
 
         Args:
             change: The change for which the segment ended.
-            last: Where it ended; None where it failed, and restarts.
+            last: Context at its end; None where it failed, and restarts.
         """
         old, holding = self._haptic, self._holding
         backend = holding.backend
@@ -173,7 +173,7 @@ class Segments:
             self._steering.refuse(str(error))
             return old, last
         if holding.taken is not None:
-            # Effects come and go at once: what is felt of them does not.
+            # Effects come and go at once, but the force that is felt does not.
             holding.taken.hand_over()
         if goes_on:
             context = transfer_context(old, last, new)
@@ -190,7 +190,7 @@ class Segments:
 
         Args:
             old: The diagram that ran.
-            X_WH: Where the handle goes on; None where the scene begins.
+            X_WH: Pose at which the handle goes on; None where the scene begins.
         """
         with warnings.catch_warnings():
             # The page tells it.
@@ -209,7 +209,7 @@ _FIRST_DISTANCE = 4.0
 
 
 class CockpitRun:
-    """The page of a run, and who holds its handle; to be closed.
+    """The page of a run, and the holder of its handle; to be closed.
 
     As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
     """
@@ -232,13 +232,13 @@ class CockpitRun:
             meshcat: The Meshcat that the page shows.
             listener: The page's port, of `open_page_port`.
             name: Name of the scene.
-            device: Address of what is held, as `open_device`; None for the simulated
-                one.
-            locked: Why nothing but the picture may be changed; empty if it may.
+            device: Address of the device that is held, as for `open_device`; None for
+                the simulated one.
+            locked: Reason why only the picture may be changed; empty if all may be.
             views: The members of `PICTURE_VIEWS` that are shown at first.
 
         Raises:
-            DeviceError, SceneError, TickLogError, OSError: As `open_device`.
+            DeviceError, SceneError, TickLogError, OSError: See `open_device`.
         """
         site = find_device_site(scene)
         p_WH = (site.X_WB @ site.X_BH).translation()
@@ -291,19 +291,19 @@ class CockpitRun:
         on_begin: Callable[[HapticDiagram], None],
         on_tick: Callable[[Context], None],
     ) -> HapticDiagram:
-        """Runs a scene, and what becomes of it on the page.
+        """Runs a scene, with the changes that are made on the page.
 
         Args:
             haptic: Diagram of the scene, with `backend`.
             duration_s: Simulated time, s; until Ctrl-C where None.
             pace: Waits for each tick.
             statistics: Statistics of the whole run.
-            energy: Whether to book energy: of a run that is locked.
+            energy: Whether to book energy, in a run that is locked.
             on_begin: Called with each diagram before it runs.
             on_tick: Called after every tick with the diagram's context.
 
         Returns:
-            What ran last.
+            The diagram that ran last.
 
         Raises:
             RunError: The run failed, see `simulation.run`.

@@ -28,22 +28,22 @@ from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.schema import Scene
 from drake_haptics.web.handle import PageHandle
 
-# Of the largest force and torque: what may set in without surprising a hand. The weight
-# of a tool is less, what presses a tool out of a wall more.
+# Share of the largest force and torque that may set in without surprising a hand. The
+# weight of a tool is less, the force that presses one out of a wall is more.
 _GENTLE = 0.25
-# For so long it must have been gentle: a tool that begins in a wall needs a moment
-# until it pushes.
+# Time for which it must have been gentle, s: a tool that begins in a wall needs a
+# moment until it pushes.
 _GENTLE_S = 0.1
-# From none to all, s.
+# Time in which the share that is shown rises from none to all, s.
 _RISE_S = 0.2
 
 
 def take_device(device: DeviceBackend, scene: Scene) -> SoftStartDevice:
-    """Returns a device as a hand takes it, within the limits of a scene.
+    """Returns a device that sets in gently, within the limits of a scene.
 
     Args:
-        device: Open; closed with what is returned.
-        scene: Says limits and rate.
+        device: Open device, closed with the one returned.
+        scene: Scene with the limits and the rate.
 
     Raises:
         SceneError: The device has no place, see `find_device_site`.
@@ -64,8 +64,8 @@ class SoftStartDevice(DeviceBackend):
     virtual tool meets: it may be behind a wall, or turned. Until the two have found
     each other the tool is led to the handle, and the hand feels nothing.
 
-    Where what makes the force becomes another while it is shown, as an effect comes or
-    goes, it goes over from what was shown last.
+    Where the source of the force changes while it is shown, as an effect comes or goes,
+    the force changes over gradually from the one shown last.
 
     Attributes:
         device: The device that is taken.
@@ -83,7 +83,7 @@ class SoftStartDevice(DeviceBackend):
         """Begins without force.
 
         Args:
-            device: Open; closed with this.
+            device: Open device, closed with this.
             max_force_N: Largest force that it shows, N.
             max_torque_Nm: Largest torque that it shows, N·m.
             period_s: The tick, s: one `write` in each.
@@ -94,9 +94,9 @@ class SoftStartDevice(DeviceBackend):
         self._gentle_torque_Nm = _GENTLE * max_torque_Nm
         self._most_ticks = math.ceil(_GENTLE_S / period_s)
         self._gentle_ticks = 0
-        # Of the wrench that is asked for, how much is shown, and its rise in a tick.
+        # Share of the requested wrench that is shown, and its rise in a tick.
         self._share, self._rise = 0.0, period_s / _RISE_S
-        # What the rest is of, and what was shown last.
+        # The wrench that has the rest of the share, and the wrench that was shown last.
         self._before_B = self._shown_B = np.zeros(6)
         self._contact: ContactServo | None = None
 
@@ -105,22 +105,22 @@ class SoftStartDevice(DeviceBackend):
 
     @property
     def url(self) -> str | None:
-        """The device's."""
+        """Page of the device, if there is one."""
         return self.device.url
 
     @property
     def is_placed(self) -> bool:
-        """The device's."""
+        """Tells whether the device relies on a pose of its base in the world."""
         return self.device.is_placed
 
     @property
     def shows_force(self) -> bool:
-        """The device's."""
+        """Tells whether the device can show force."""
         return self.device.shows_force
 
     @property
     def uses_slopes(self) -> bool:
-        """The device's."""
+        """Whether the device uses the slopes of a command."""
         return self.device.uses_slopes
 
     def read(self) -> DeviceReading | None:
@@ -131,7 +131,7 @@ class SoftStartDevice(DeviceBackend):
         return reading
 
     def write(self, command: DeviceCommand) -> None:
-        """Asks for what is shown of a wrench from now on."""
+        """Asks the device for the part of a wrench that is shown from now on."""
         if self._share < 1.0:
             command = self._ease(command)
         self._shown_B = command.F_Ho_B
@@ -140,18 +140,18 @@ class SoftStartDevice(DeviceBackend):
             self._contact.set_share(self._share)
 
     def start_contact_servo(self, tool: ServoTool) -> ContactServo:
-        """Starts the device's, which shows as much of its wrench as of one here."""
+        """Starts the device's servo, of whose wrench the same share is shown."""
         self._contact = self.device.start_contact_servo(tool)
         self._contact.set_share(self._share)
         return self._contact
 
     def end_contact_servo(self) -> None:
-        """Ends the device's."""
+        """Ends the device's servo."""
         self._contact = None
         self.device.end_contact_servo()
 
     def hand_over(self) -> None:
-        """Goes over to what is asked for next from what is shown, as it sets in."""
+        """Changes over gradually from the wrench that is shown to the next ones."""
         self._before_B, self._share = self._shown_B, 0.0
 
     def resume(self) -> None:
@@ -174,7 +174,7 @@ class SoftStartDevice(DeviceBackend):
         self.device.close()
 
     def get_link_status(self) -> LinkStatus:
-        """Returns the device's."""
+        """Returns the state of the connection to the device."""
         return self.device.get_link_status()
 
     def _ease(self, command: DeviceCommand) -> DeviceCommand:
@@ -205,11 +205,12 @@ class ForceOnRequest:
     """Lets the force of a taken device set in where somebody asks for it."""
 
     def __init__(self, device: SoftStartDevice, wants_it_now: Callable[[], bool]):
-        """Looks at nothing yet.
+        """Starts before the first tick.
 
         Args:
-            device: May wait.
-            wants_it_now: Says, while it waits, whether to show the force as it is.
+            device: Device that may wait.
+            wants_it_now: Function that tells, while it waits, whether to show the force
+                at once.
         """
         self._device = device
         self._wants_it_now = wants_it_now
@@ -222,7 +223,7 @@ class ForceOnRequest:
         if not self._device.waits or gate == GateState.FAULT:
             self._could_show = False
             return
-        # A wish from before was for something else: to leave a fault.
+        # An earlier request was for something else: to leave a fault.
         if self._wants_it_now() and self._could_show:
             self._device.resume()
         self._could_show = gate == GateState.ACTIVE
@@ -239,23 +240,23 @@ class Holding:
 
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
-        backend: The device that is held; None in the scene's own simulated hand.
+        backend: The device that is held; None for the scene's own simulated hand.
         site: Place of the scene's device.
     """
 
     def __init__(
         self, scene: Scene, meshcat: Meshcat, address: str | None, *, has_hand: bool
     ):
-        """Takes what an address names, or the scene's simulated device.
+        """Takes the device that an address names, or the scene's simulated one.
 
         Args:
-            scene: Says where its device stands.
+            scene: Scene that says where its device stands.
             meshcat: The Meshcat that the page shows.
             address: Address for `open_device`; None for the simulated one.
-            has_hand: Whether there is a simulated one.
+            has_hand: Whether the scene's device can be simulated.
 
         Raises:
-            DeviceError, SceneError, TickLogError, OSError: As `open_device`.
+            DeviceError, SceneError, TickLogError, OSError: See `open_device`.
         """
         self._scene = scene
         self._meshcat = meshcat
@@ -299,12 +300,12 @@ class Holding:
 
         Args:
             name: One of `names`.
-            X_WH: Where the mouse and the sliders take it; where the scene's hand
-                starts if not given.
+            X_WH: Pose at which the mouse and the sliders take it; where the scene's
+                hand starts if not given.
 
         Raises:
-            DeviceError, SceneError, TickLogError, OSError: As `open_device`. It is
-                held as before then.
+            DeviceError, SceneError, TickLogError, OSError: See `open_device`; the
+                holder stays the same then.
         """
         if name not in self.names:
             raise DeviceError(f"There is no holder called {name!r}.")
@@ -321,7 +322,7 @@ class Holding:
             self.backend.close()
 
     def _open(self, name: str, X_WH: RigidTransform | None) -> DeviceBackend | None:
-        """Returns what is to be held."""
+        """Returns the backend of a holder."""
         site = self.site
         X_BH = site.X_BH if X_WH is None else site.X_WB.InvertAndCompose(X_WH)
         if name == MOUSE:

@@ -44,10 +44,10 @@ EFFECTS = {
     "gravity": GravityParameters,
     "passivity": PassivityParameters,
 }
-# What a material says of an effect means nothing without it.
+# A material's value for an effect means nothing without it.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
 _CLUSTER_SIZE = "contact.cluster_size_m"
-# Where `octree` is chosen and nobody has said how large clusters are, m.
+# Size of clusters where `octree` is chosen and no size is given, m.
 _CLUSTER_SIZE_M = 5e-3
 
 
@@ -76,16 +76,17 @@ class SceneChanges:
         return self._file
 
     def read_file(self, item: LiveKey) -> float:
-        """Returns what a value goes back to, in its unit.
+        """Returns the number that a value is reset to, in its unit.
 
-        That is the file's, or what a choice brought of which the file says nothing.
+        It is the file's, or the one that came with a choice where the file has no such
+        value.
         """
         if item.key == _CLUSTER_SIZE:
             return self._cluster_size_m
         return item.read(self._with_file_effects(item))
 
     def _with_file_effects(self, item: LiveKey) -> Scene:
-        """Returns the file's scene; with the effect of a key that it does not name."""
+        """Returns the file's scene, with the effect of a key added if need be."""
         if item.group != "effects":
             return self._file
         name = item.key.split(".")[1]
@@ -183,7 +184,7 @@ class SceneChanges:
                 `SCENE_VERBS`.
 
         Raises:
-            ChangeError: It cannot be.
+            ChangeError: The change is not possible.
         """
         match request["do"]:
             case "set":
@@ -235,7 +236,7 @@ def _find_keys(scene: Scene) -> dict[str, LiveKey]:
 
 
 def _make_material(file: Material, now: Material, effects: Effects) -> Material:
-    """Returns a material without what means nothing with these effects."""
+    """Returns a material without values that mean nothing with these effects."""
     return dataclasses.replace(
         now,
         **{
@@ -265,7 +266,7 @@ class CouplingAdvice:
         still run on a real device: that is a warning.
 
         Args:
-            scene: Its device and hand hold for all that are checked.
+            scene: Scene whose device and hand hold for all that are checked.
 
         Raises:
             SceneError: There is no such preset, or its model is no arm.
@@ -294,11 +295,11 @@ class CouplingAdvice:
         """Returns each bound that a scene's coupling breaks.
 
         Args:
-            scene: Its coupling is checked.
-            is_real: Whether a real device shows its force. It is checked as
-                `check_real_coupling` does, by its ratings and in the loosest grip; the
-                simulated one as `check_scene_coupling`, in the scene's. Where there is
-                no simulated hand, these are the ratings.
+            scene: Scene whose coupling is checked.
+            is_real: Whether a real device shows its force. A real one is checked as
+                `check_real_coupling` does, by its ratings and in the loosest grip; a
+                simulated one as `check_scene_coupling` does, in the scene's grip.
+                Without a simulated hand these are the ratings.
         """
         if is_real:
             return find_real_bounds(scene, self._preset, self._loosely_held)

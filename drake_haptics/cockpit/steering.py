@@ -28,7 +28,7 @@ from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS, check_vie
 from drake_haptics.visualization.meshcat import aim_camera, find_framed_points
 from drake_haptics.web.messages import REFUSED
 
-# Of force and torque on the hand, in the picture's scene tree.
+# Arrows of force and torque on the hand, in the picture's scene tree.
 _FELT = ("/haptics/force", "/haptics/torque")
 _UNFELT_OPACITY = 0.25
 
@@ -44,7 +44,7 @@ class PagePicture:
         """Begins without a diagram.
 
         Args:
-            meshcat: Whose camera it is.
+            meshcat: Meshcat with the camera.
             views: Names of the views that are shown at first.
         """
         self._meshcat = meshcat
@@ -52,9 +52,9 @@ class PagePicture:
         self._is_felt = True
 
     def begin(self, haptic: HapticDiagram) -> None:
-        """Shows of a diagram what was shown of the one before."""
+        """Shows the same views of a diagram as of the one before."""
         self._visualizer = haptic.visualizer
-        # Of many objects it would be long for a tick.
+        # With many objects this would take too long for a tick.
         self._p_WP = find_framed_points(haptic)
         # What is drawn for the first time is not faded.
         self._is_felt = True
@@ -78,7 +78,7 @@ class PagePicture:
             request: A request that `read_page_request` returned.
 
         Returns:
-            Whether it was.
+            Whether it did.
 
         Raises:
             ValueError: There is no such view or camera.
@@ -101,7 +101,7 @@ class PagePicture:
             self._visualizer.Show(view, visible)
 
 
-# A slider that needs another diagram builds it when it has rested for so long.
+# Time for which a slider rests before the diagram that it needs is built, s.
 _REST_S = 0.25
 _AT_ONCE = -math.inf
 
@@ -111,7 +111,7 @@ class Change:
     """The reason for which a segment of a run ended.
 
     Attributes:
-        handle: Name of who holds the handle from now on.
+        handle: Name of the holder of the handle from now on.
         restarts: Whether the scene begins again.
     """
 
@@ -122,11 +122,11 @@ class Change:
 class Steering:
     """Steers a run from its page.
 
-    A run is a sequence of segments, each of one diagram. What can be written into a
-    Context is, between two ticks; what cannot ends the segment. What cannot be at all
-    is answered with a sentence.
+    A run is a sequence of segments, each of one diagram. A change that can be written
+    into a Context is, between two ticks; any other one ends the segment. A change that
+    is not possible is answered with a sentence.
 
-    Values glide to what is asked for: what a hand feels does not step.
+    Values glide to those requested, so that the hand feels no step.
 
     Attributes:
         changes: The scene as people have changed it.
@@ -143,9 +143,9 @@ class Steering:
 
         Args:
             changes: The scene.
-            holding: Says who holds the handle.
+            holding: Holder of the handle.
             picture: The picture on the page.
-            locked: Why nothing but the picture may be changed; empty if it may.
+            locked: Reason why only the picture may be changed; empty if all may be.
         """
         self.changes = changes
         self._end_s = math.inf
@@ -166,7 +166,7 @@ class Steering:
         self._picture.begin(haptic)
 
     def carry_values(self, haptic: HapticDiagram, root: Context) -> None:
-        """Writes values that are on their way into the context of a new diagram."""
+        """Writes values that still glide into the context of a new diagram."""
         self._running = haptic.scene
         self._glide.aim(haptic.scene)
         self._write(haptic, root)
@@ -179,7 +179,7 @@ class Steering:
             now_s: The time, s.
 
         Returns:
-            Whether the segment is to end: `take_change` says for what.
+            Whether the segment is to end: `take_change` has the reason.
         """
         if self._glide.is_moving:
             self._glide.advance()
@@ -187,7 +187,7 @@ class Steering:
         return now_s >= self._end_s
 
     def take_change(self) -> Change | None:
-        """Returns what the segment ended for; None if it was for something else."""
+        """Returns the change that ended the segment; None if something else did."""
         change, self._change = self._change, None
         return change
 
@@ -200,10 +200,10 @@ class Steering:
         """Undoes all changes, after a run has failed with them.
 
         Args:
-            why: It has.
+            why: Reason of the failure.
 
         Returns:
-            Whether there were any, of a run that nobody feels: else it is over.
+            Whether there were any, in a run that nobody feels: otherwise it is over.
         """
         changes = self.changes
         if changes.scene is changes.file or self._holding.name == DEVICE:
@@ -216,7 +216,7 @@ class Steering:
     def tell_error(self) -> str:
         """Returns why the last request could not be done; empty if it could.
 
-        What has not been told is not forgotten for a request that could be.
+        An error that was not told yet stays when a later request succeeds.
         """
         self._is_error_told = True
         return self._error
@@ -268,7 +268,7 @@ class Steering:
         """Changes the run, if that is what is asked; returns whether it is.
 
         Raises:
-            ChangeError: It cannot be.
+            ChangeError: The change is not possible.
         """
         verb = request.get("do")
         if verb == "resume" and (taken := self._holding.taken) is not None:
@@ -289,7 +289,7 @@ class Steering:
         return True
 
     def _fail(self, why: str) -> None:
-        """Keeps what the page is to be told."""
+        """Keeps an error that the page is to be told."""
         self._error, self._is_error_told = why, False
 
     def _apply(self, root: Context, now_s: float) -> None:
@@ -298,7 +298,7 @@ class Steering:
         if is_live_change(self._haptic.scene, scene):
             self._running = scene
             self._glide.aim(scene)
-            # The clustering is another one at once.
+            # The clustering changes at once.
             self._write(self._haptic, root)
         else:
             self._end(now_s + _REST_S)
@@ -308,17 +308,17 @@ class Steering:
         put_live_values(haptic, root, self._glide.apply(self._running))
 
     def _make_glide(self) -> LiveValueRamp:
-        """Returns values that are where they are to be."""
+        """Returns a glide that has arrived."""
         return LiveValueRamp(1.0 / self.changes.file.device.rate_hz)
 
     def _end(
         self, end_s: float, handle: str | None = None, restarts: bool = False
     ) -> None:
-        """Ends the segment at a time, for this and for what it is to end for already.
+        """Ends the segment at a time, for this change and those pending.
 
         Args:
-            end_s: When, if it is not to end at once.
-            handle: Name of who is to hold the handle, if that changes.
+            end_s: Time at which to end it, s; earlier if that was asked for.
+            handle: Name of the next holder of the handle, if that changes.
             restarts: Whether the scene is to begin again.
         """
         if self._change is not None:

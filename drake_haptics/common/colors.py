@@ -19,7 +19,7 @@ VIRTUAL_FACET: Color = (0.25, 0.25, 0.28, 0.30)
 BACKGROUND_TOP: Color = (0.97, 0.97, 0.98, 1.0)
 BACKGROUND_BOTTOM: Color = (0.86, 0.88, 0.91, 1.0)
 
-# What is drawn as lines and letters on white: the force's and the torque's.
+# Lines and letters on white: the force's and the torque's.
 FORCE_INK: Color = (0.62, 0.40, 0.0, 1.0)
 TORQUE_INK: Color = (0.0, 0.42, 0.47, 1.0)
 
@@ -33,8 +33,8 @@ INKS: tuple[Color, ...] = (
     (0.66, 0.20, 0.55, 1.0),
 )
 
-# What is drawn of stability. One color means one thing in every panel; what is the
-# scene's own is black.
+# Plots of stability. One color means one thing in every panel; what is the scene's own
+# is black.
 STABLE: Color = NEAR_CONTACT
 UNSTABLE: Color = PENETRATING_CONTACT
 EIGENVALUE: Color = (*HANDLE_GHOST[:3], 1.0)
@@ -43,7 +43,7 @@ ONE_AXIS: Color = ENVIRONMENT
 FORMULA: Color = (0.30, 0.36, 0.46, 1.0)
 PASSIVITY: Color = TORQUE_INK
 
-# What is drawn of accuracy: the front and its knees, and what is another model's.
+# Plots of accuracy: the front and its knees, and what is another model's.
 FRONT: Color = EIGENVALUE
 OTHER_MODEL: Color = FORMULA
 
@@ -85,7 +85,7 @@ def write_css(color: Color) -> str:
 
 
 def make_legend(has_friction: bool) -> list[dict[str, str]]:
-    """Returns what the colors of a loop's picture mean.
+    """Returns the meanings of the colors in a loop's picture.
 
     Args:
         has_friction: Whether friction is drawn.

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-# A wrench, a pose: up to here an array's numbers are told, beyond only its size.
+# Arrays of up to this many numbers, as a wrench or a pose, are written out.
 _MOST_NUMBERS = 7
 _MOST_ITEMS = 3
 
@@ -17,11 +17,12 @@ _MOST_ITEMS = 3
 def one_line(instance: Any) -> str:
     """Returns a dataclass's name and fields, long ones by their size.
 
-    To be a class's `__repr__`: arrays of up to seven numbers, numbers and texts are
-    told, larger arrays and collections counted, other objects named by their class.
+    It is for a class's `__repr__`: arrays of up to seven numbers, numbers and texts are
+    written out, larger arrays and collections counted, other objects named by their
+    class.
 
     Args:
-        instance: Of a dataclass.
+        instance: Instance of a dataclass.
     """
     shown = (
         f"{field.name}={brief(getattr(instance, field.name))}"
@@ -54,9 +55,9 @@ def count(number: int, noun: str, plural: str | None = None) -> str:
     """Returns "1 piece", "2 pieces", "3,000 vertices".
 
     Args:
-        number: How many there are.
-        noun: What they are.
-        plural: Of the noun, where it is not the noun with an s.
+        number: Number of things.
+        noun: Noun for one of them.
+        plural: Plural of the noun, where it is not the noun with an s.
     """
     return f"{number:,} {noun if number == 1 else plural or f'{noun}s'}"
 

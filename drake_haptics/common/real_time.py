@@ -27,7 +27,7 @@ class RealTimePacer:
     driven at a rate that no one has designed for.
 
     Args:
-        period_s: From tick to tick, s.
+        period_s: Time from tick to tick, s.
         clock: Reads the time, s.
         sleep: Waits for a number of seconds.
 
@@ -45,7 +45,7 @@ class RealTimePacer:
         self._period_s = period_s
         self._clock = clock
         self._sleep = sleep
-        # From the first tick on: until then the loop is only being prepared.
+        # Due from the first tick on: until then the loop is only being prepared.
         self._due_s: float | None = None
         self._late_s = np.zeros(_MAX_RECORDS)
         self._last_late_s = 0.0
@@ -100,7 +100,7 @@ class RealTimePacer:
         """Returns how late the last ticks were: p50, p99 and p99.9, s.
 
         Args:
-            last: How many of them count; one percentile of a thousand takes 30 µs.
+            last: Number of ticks that count; one percentile of a thousand takes 30 µs.
         """
         count = min(last, self._ticks, _MAX_RECORDS)
         if not count:
@@ -125,7 +125,7 @@ def realtime_priority() -> Iterator[bool]:
     if (os.cpu_count() or 1) < 2 or not hasattr(os, "sched_setscheduler"):
         yield False
         return
-    # Of the calling thread, in spite of the names of these functions.
+    # They act on the calling thread, in spite of the names of these functions.
     before = os.sched_getscheduler(0), os.sched_getparam(0)
     priority = os.sched_get_priority_min(os.SCHED_RR) + _ABOVE_LEAST
     try:
@@ -143,11 +143,11 @@ def realtime_priority() -> Iterator[bool]:
 
 @contextmanager
 def stop_on_signals(stop: Callable[[], None]) -> Iterator[None]:
-    """Calls `stop` at signals that a person may send, instead of what they do else.
+    """Calls `stop` at signals that a person may send, instead of their usual effect.
 
-    These are SIGINT and SIGTERM; SIGHUP, for a terminal that was closed, but where it
-    is ignored (`nohup`); and SIGTSTP (Ctrl-Z), as what stands still cannot take its
-    force away. Only the main thread may use it.
+    These are SIGINT and SIGTERM; SIGHUP, for a terminal that was closed, unless it is
+    ignored (`nohup`); and SIGTSTP (Ctrl-Z), as a process that stands still cannot take
+    its force away. Only the main thread may use it.
 
     Args:
         stop: Asks a loop to end after its tick; called between two instructions of

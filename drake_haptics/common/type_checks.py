@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-# Has all parts of a scene.
+# The module of all parts of a scene.
 _SCHEMA = "drake_haptics.scene.schema"
-# What is taken for these: also NumPy's numbers, and paths for the names of files.
+# Types that are accepted for these: NumPy's numbers too, and paths for file names.
 _TAKEN: dict[Any, tuple[type, ...]] = {
     float: (numbers.Real,),
     int: (numbers.Integral,),
@@ -37,11 +37,11 @@ _WORDS: dict[Any, str] = {
 def require_kinds(hint: str = "", **arguments: tuple[object, Any]) -> None:
     """Raises TypeError unless arguments are of their kinds.
 
-    Parts of a scene, lists and mappings are looked into. What a value may be is not
-    asked.
+    Parts of a scene, lists and mappings are looked into. The range of a value is not
+    checked.
 
     Args:
-        hint: What helps, for the end of the message.
+        hint: Advice for the end of the message.
         **arguments: Value and kind of each argument, by its name. A kind is what an
             annotation says: a class, a union, `list[...]`, `Sequence[...]`,
             `Mapping[...]`, `Callable`.

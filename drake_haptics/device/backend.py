@@ -55,13 +55,13 @@ class DeviceReading:
     Attributes:
         sequence: Rises with every new sample; the same again means that nothing new
             has come.
-        time_s: When it was sampled, by the device's own clock, s.
+        time_s: Time of the sample by the device's own clock, s.
         X_BH: (7,) the handle's pose [qw qx qy qz x y z], unit quaternion, m.
         V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s.
         F_Ho_B: (6,) the wrench [τ; f] at Ho that the device then showed, N·m and N.
         buttons: Bit i is set while button i is held.
         gate: Whether the device shows force.
-        fault: Why not, where it is at fault.
+        fault: Reason of the fault, where it is at fault.
     """
 
     sequence: int
@@ -115,11 +115,11 @@ class LinkStatus:
     Attributes:
         received: Samples that came.
         lost: Samples that never came, by the gaps in their numbers.
-        rejected: What came and was refused: damaged, old, foreign.
+        rejected: Packets that came and were refused: damaged, old, foreign.
         lateness_s: p50, p99 and p99.9 of how late the backend's own thread acted
             after its deadline, s; None where it has none.
-        solved: How often that thread solved contact; 0 where it does not.
-        solved_late: How often that took longer than its period.
+        solved: Number of times that thread solved contact; 0 where it does not.
+        solved_late: Number of times that took longer than its period.
     """
 
     received: int = 0
@@ -165,7 +165,7 @@ class DeviceBackend(ABC):
 
     @property
     def uses_slopes(self) -> bool:
-        """Whether it uses the slopes of a command; no loop computes them else."""
+        """Whether it uses the slopes of a command; otherwise no loop computes them."""
         return False
 
     @abstractmethod
@@ -187,7 +187,7 @@ class DeviceBackend(ABC):
         """Lets a thread solve contact between ticks and show it instead of `write`.
 
         Args:
-            tool: It is copied.
+            tool: Tool of the servo, which is copied.
 
         Raises:
             DeviceError: The device has no servo of its own.

@@ -23,16 +23,16 @@ from drake_haptics.device.backend import DeviceReading, Fault, GateState
 Peer = tuple[str, int]
 """Host and port."""
 
-# More than any packet of the protocol: what is longer is cut, and refused for it.
+# Longer than any packet of the protocol: a longer one is cut, and refused for it.
 _BUFFER_BYTES = 2048
 # A tick looks at so many packets and leaves the rest: a host sends one or two, and a
 # flood must not keep the loop from its next tick.
 _MAX_PACKETS_PER_TICK = 64
 _WRAP = 1 << 32
-# Linux's.
+# Only Linux has this clock.
 _SUSPENDED_CLOCK: int | None = getattr(time, "CLOCK_BOOTTIME", None)
-# Whoever sends what is judged so is answered. The last two come to pass only while no
-# force is shown, and their sender must learn why.
+# Verdicts whose sender is answered. The last two come to pass only while no force is
+# shown, and their sender must learn why.
 _ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
 # A host that is silent for longer has gone, or never was: a forged address must not be
 # sent states for ever.
@@ -46,7 +46,7 @@ _ROUNDING = 1.0 + 1e-12
 def read_clock_ns() -> int:
     """Returns the time, ns, by a clock that goes on while the machine is suspended.
 
-    What was commanded before is stale after that. Systems that have no such clock have
+    Commands from before that are stale afterwards. Systems that have no such clock have
     one that rests, or count the time by their monotonic clock anyway.
     """
     if _SUSPENDED_CLOCK is None:
@@ -166,7 +166,7 @@ class DeviceDriver:
         """Serves in real time. However it ends, it ends at zero force.
 
         Args:
-            duration_s: For how long, s; until `stop` where not given.
+            duration_s: Duration, s; until `stop` where not given.
             on_tick: Called after every tick.
         """
         # Collecting garbage over all objects of a simulation takes many ticks.
@@ -333,7 +333,7 @@ class DriverStatistics:
         """Notes whether the device is at fault; between ticks too.
 
         Args:
-            time_s: Since the driver began, s.
+            time_s: Time since the driver began, s.
             fault: A `Fault`, or its number.
         """
         if fault == self._fault:
@@ -369,7 +369,7 @@ class DriverSocket:
 
     Args:
         host: Address to listen at; only this machine can reach 127.0.0.1.
-        port: To listen at; 0 lets the system choose.
+        port: Port to listen at; 0 lets the system choose.
 
     Raises:
         HapticsError: The address or port is not available.
@@ -396,7 +396,7 @@ class DriverSocket:
         """Yields the packets that have come and who sent each, oldest first.
 
         Args:
-            most: So many at most; the others are left for the next call.
+            most: Largest number of packets; the others are left for the next call.
         """
         for _ in range(most):
             try:

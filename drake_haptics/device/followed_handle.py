@@ -139,8 +139,8 @@ class PoseFilter:
     limit, and its velocity is the derivative of its pose.
 
     Rotations do the same by their rotation vector from where the runner was when the
-    goal was set. The solution is in closed form: what is asked for, and when, changes
-    nothing, and no gap is too long.
+    goal was set. The solution is in closed form: it does not depend on the times at
+    which it is evaluated, and no gap is too long.
     """
 
     def __init__(
@@ -188,7 +188,7 @@ class PoseFilter:
 
         Args:
             X_BG: (7,) goal [qw qx qy qz x y z], m; the quaternion of any length.
-            time_s: Now, s; a time before the last goal's is taken as that.
+            time_s: Present time, s; a time before the last goal's is taken as that.
 
         Raises:
             ValueError: The pose is not finite or has no quaternion.
@@ -227,10 +227,10 @@ class PoseFilter:
         self._time_s = time_s
 
     def calc(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
-        """Returns where the handle is, and how it moves.
+        """Returns the pose and the velocity of the handle.
 
         Args:
-            time_s: When, s; a time before the last goal's is taken as that.
+            time_s: Time, s; a time before the last goal's is taken as that.
 
         Returns:
             X_BH (7,) [qw qx qy qz x y z], m, with a unit quaternion, and V_BH (6,)

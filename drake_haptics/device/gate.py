@@ -16,13 +16,13 @@ _UINT32 = (1 << 32) - 1
 class LocalGate:
     """A `DeviceGate` with the one host that it can have.
 
-    The commands go to the gate as packets, so that they are judged by the code that
-    judges those from afar.
+    The commands go to the gate as packets, so that the code that judges those from afar
+    judges these too.
 
     Args:
         max_force_N: Largest force ever shown, N.
         max_torque_Nm: Largest torque ever shown, N·m.
-        ttl_s: How long a wrench holds without a newer one, s.
+        ttl_s: Time for which a wrench holds without a newer one, s.
 
     Raises:
         ValueError: A limit or the time is out of the bounds of `DeviceGate`.
@@ -98,10 +98,10 @@ class GateStatus:
     Attributes:
         F_Ho_B: (6,) the wrench [τ; f] that is shown, N·m and N.
         session: The run of a host that is served, 0 for none.
-        command_sequence: The newest command that was accepted.
-        rejected: How many were refused.
+        command_sequence: Number of the newest command that was accepted.
+        rejected: Number of commands that were refused.
         state: Whether force is shown.
-        fault: Why not, where it is at fault.
+        fault: Reason of the fault, where it is at fault.
         max_force_N: Largest force ever shown, N.
         max_torque_Nm: Largest torque, N·m.
     """

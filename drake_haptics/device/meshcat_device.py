@@ -44,7 +44,7 @@ _STICK_TURN_DEG_PER_S = 90.0
 
 
 class GamepadReader:
-    """Makes speeds of a gamepad's state, and notes when its buttons go down.
+    """Turns a gamepad's state into speeds, and notes when its buttons go down.
 
     Left stick: along x and y, or, when it turns, tilts towards there. Right stick: up
     and down, and turns about the vertical. The first button switches between moving
@@ -62,7 +62,7 @@ class GamepadReader:
         """Notes the buttons' state.
 
         Args:
-            values: Of each button, 0 to 1.
+            values: Value of each button, 0 to 1.
 
         Returns:
             The buttons as bits, and whether home was called for just now.
@@ -92,7 +92,7 @@ class GamepadReader:
 
 
 def _shape(value: float) -> float:
-    """Returns a stick's share beyond the dead zone; of what is no number, none."""
+    """Returns a stick's share beyond the dead zone; 0 if it is not in [-1, 1]."""
     if not abs(value) <= 1.0:
         return 0.0
     beyond = max(abs(value) - _DEADZONE, 0.0) / (1.0 - _DEADZONE)
@@ -121,10 +121,10 @@ class MeshcatDevice(DeviceBackend):
         """Puts the controls into the page.
 
         Args:
-            meshcat: Where.
+            meshcat: Meshcat whose page has the controls.
             X_WB: Pose of the device's base in the world of the Meshcat.
             X_BH: Pose of the handle where it starts.
-            workspace_radius_m: How far the sliders reach along each axis, m.
+            workspace_radius_m: Reach of the sliders along each axis, m.
 
         Raises:
             ValueError: A pose is not finite, or the radius is less than a millimeter
@@ -165,12 +165,12 @@ class MeshcatDevice(DeviceBackend):
 
     @property
     def is_placed(self) -> bool:
-        """True."""
+        """Always True."""
         return True
 
     @property
     def shows_force(self) -> bool:
-        """False."""
+        """Always False."""
         return False
 
     def read(self) -> DeviceReading:
@@ -239,7 +239,7 @@ class MeshcatDevice(DeviceBackend):
             self._handle.set_goal(self._calc_goal(), now_s)
 
     def _show_offsets(self) -> None:
-        """Moves the sliders to what is wanted."""
+        """Moves the sliders to the wanted offsets."""
         for i, (name, _, _) in enumerate(_SLIDERS):
             if abs(self._offsets[i] - self._shown[i]) >= 0.5:
                 self._shown[i] = self._meshcat.SetSliderValue(

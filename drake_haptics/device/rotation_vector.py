@@ -1,6 +1,6 @@
 """Rotation vectors, quaternions and angular velocity in plain numbers.
 
-NumPy is slow for three of them. A rotation vector r is axis times angle, rad; a
+NumPy is slow for three numbers. A rotation vector r is axis times angle, rad; a
 quaternion is [w x y z]. The formulas are those of Solà, Deray and Atchuthan, "A micro
 Lie theory for state estimation in robotics", 2018, for the left Jacobian:
 R_AB(t) = exp(r(t)) R_AB(0) turns at ω in A.
@@ -131,7 +131,7 @@ class TurnRate:
 
         Args:
             orientation: (4,) unit quaternion [qw qx qy qz] of the handle in B.
-            time_s: When it came, s; rises.
+            time_s: Time at which it came, s; rises.
 
         Returns:
             (3,) ω of the handle in B, rad/s.

@@ -48,8 +48,8 @@ class UdpDevice(DeviceBackend):
             port: Its UDP port.
             max_force_N: Largest force asked for, where the device allows more, N.
             max_torque_Nm: Largest torque, N·m.
-            ttl_s: How long the device shows a wrench that no packet renews, s.
-            hold_s: How long a wrench is shown that no `write` renews, s.
+            ttl_s: Time for which the device shows a wrench that no packet renews, s.
+            hold_s: Time for which a wrench is shown that no `write` renews, s.
             max_rate_hz: Largest rate of packets to the device, Hz.
 
         Raises:
@@ -95,14 +95,14 @@ class UdpDevice(DeviceBackend):
 
     @property
     def uses_slopes(self) -> bool:
-        """Its servo shows them between two ticks."""
+        """Always True: its servo uses them between two ticks."""
         return True
 
     def write(self, command: DeviceCommand) -> None:
         """Asks for a wrench from now on; the first call also enables the device.
 
-        Where contact is solved by the servo, the wrench is what that finds, and this
-        does nothing.
+        While the servo solves contact, its wrench is shown instead, and this does
+        nothing.
         """
         if self._contact is not None and not self._contact.status().is_running:
             self._contact = None
@@ -112,7 +112,7 @@ class UdpDevice(DeviceBackend):
             )
 
     def start_contact_servo(self, tool: ServoTool) -> ContactServo:
-        """Lets a thread solve contact between ticks, where `write` does nothing then.
+        """Lets a thread solve contact between ticks; `write` then does nothing.
 
         Its first `renew` enables the device. One that was started before ends, and its
         tool goes on from where it is, unless something was written since.

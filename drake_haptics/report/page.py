@@ -20,10 +20,10 @@ class Table:
     """Text in rows and columns.
 
     Attributes:
-        title: what it is about, a line.
-        note: how to read it, some sentences.
-        header: of each column.
-        rows: as long as the header each; the first cell says what the row is.
+        title: Subject of the table, a line.
+        note: Explanation of the table, some sentences.
+        header: Heading of each column.
+        rows: Rows as long as the header; the first cell says what the row is.
     """
 
     title: str
@@ -58,7 +58,7 @@ def check_page_path(path: Path) -> None:
 
 
 def draw_png(figure: Figure, dpi: int = 110) -> bytes:
-    """Returns a figure as PNG of so many dots per inch."""
+    """Returns a figure as PNG of that many dots per inch."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=dpi)
     return stream.getvalue()
@@ -71,7 +71,7 @@ def write_page(path: Path, template: str, **data: object) -> None:
         path: Path of the file.
         template: Path of its Jinja template in the package, which extends
             `report/page.html`.
-        **data: What the template names. Text is escaped.
+        **data: Values of the names in the template. Text is escaped.
 
     Raises:
         OSError: The file cannot be written.

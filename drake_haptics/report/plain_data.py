@@ -25,7 +25,7 @@ def to_plain_data(
 
     Args:
         value: The figures.
-        replace: Returns what stands for an infinite number or NaN.
+        replace: Function that returns a substitute for an infinite number or NaN.
     """
     if is_dataclass(value) and not isinstance(value, type):
         value = {field.name: getattr(value, field.name) for field in fields(value)}
@@ -48,10 +48,10 @@ def name_number(number: float) -> str:
 
 
 def read_figures(kind: type[_Figures], data: Any) -> _Figures:
-    """Returns the dataclass that `dataclasses.asdict` made plain data of.
+    """Returns the dataclass that `dataclasses.asdict` turned into plain data.
 
-    Where a field is a number, null stands for NaN, and so do the words of
-    `name_number` for theirs.
+    Where a field is a number, null stands for NaN, and the words of `name_number` for
+    their numbers.
 
     Args:
         kind: The dataclass, of dataclasses, lists and tuples of them, and plain data.

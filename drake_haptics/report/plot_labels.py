@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Bbox
 
 _SIZE = 9
-# How far a label may be from its point, and how far apart two tries are, in pixels.
+# Largest distance of a label from its point, and the step between two tries, in pixels.
 _FARTHEST, _STEP = 300, 6
 # Directions that are tried, the first below and left.
 _DIRECTIONS = tuple(math.radians(225.0 + 15.0 * i) for i in range(24))
-# Of the room round words, in pixels; and of the frame round framed ones.
+# Room round words, and round framed ones, in pixels.
 _PADDING, _FRAMED_PADDING = 2.0, 8.0
 _RING_SIZE = 15.0
 # From this ratio of the largest to the least on, times are logarithmic.
@@ -40,10 +40,10 @@ class Label:
     """Words at a point.
 
     Attributes:
-        x: Of the point, in the axes' coordinates.
-        y: The same.
-        words: What is said of it.
-        color: Of the words and of the line to the point.
+        x: First coordinate of the point, in the axes' coordinates.
+        y: Other coordinate of the point.
+        words: Text of the label.
+        color: Color of the words and of the line to the point.
         is_framed: Whether the point has a ring and the words a frame.
     """
 
@@ -58,12 +58,12 @@ def label_points(axes: Axes, labels: Sequence[Label]) -> None:
     """Writes words near points, each with a line to its point.
 
     Each label is as near as it can be without leaving the axes or meeting markers,
-    lines or earlier labels; below and left of its point if there is a choice: nothing
-    is there of a front. Where there is no such place it meets the least of them.
+    lines or earlier labels; below and left of its point if there is a choice, where a
+    front leaves room. Where there is no such place it meets the least of them.
 
     Args:
-        axes: In a figure whose layout is settled.
-        labels: The most important first.
+        axes: Axes in a figure whose layout is settled.
+        labels: Labels, the most important first.
     """
     for label in labels:
         if label.is_framed:
@@ -87,9 +87,9 @@ class _Place:
     """A place where a label may be, in pixels.
 
     Attributes:
-        offset: Of the middle of its words, from the point, in points.
-        box: Of the words, with room round them.
-        leader: From the point to the middle.
+        offset: Offset of the middle of its words from the point, in points.
+        box: Box of the words, with room round them.
+        leader: Line from the point to the middle.
     """
 
     offset: tuple[float, float]
@@ -112,16 +112,16 @@ def _choose_place(
     markers: Sequence[Bbox],
     lines: Sequence[Path],
 ) -> _Place:
-    """Returns the first place that meets no label, and the least of the rest.
+    """Returns the first place that meets no label, and the fewest of the rest.
 
-    To hide what is drawn is worse than lines across a label.
+    Hiding a marker or line is worse than a line across a label.
 
     Args:
-        places: In order; the last one if each meets a label.
-        boxes: Of labels.
-        leaders: Of the same labels.
-        markers: Where points are.
-        lines: What is drawn through.
+        places: Places in order; the last one is returned if each meets a label.
+        boxes: Boxes of labels.
+        leaders: Lines from the same labels to their points.
+        markers: Boxes of the points.
+        lines: Lines that are drawn.
     """
     chosen: _Place | None = None
     least = math.inf
@@ -243,10 +243,10 @@ def add_legends(figure: Figure, axes: Axes, beside: Sequence[str], title: str) -
     """Puts all names below the panels, where no data are.
 
     Args:
-        figure: In a constrained layout.
-        axes: Whose lines have names.
+        figure: Figure in a constrained layout.
+        axes: Axes whose lines are labeled.
         beside: Names that stand on the right, in a list of their own.
-        title: Of the other names, on the left.
+        title: Title of the other names, on the left.
     """
     names = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
     parts = [

@@ -13,7 +13,7 @@ from drake_haptics.device.backend import (
     GateState,
 )
 
-# A driver that has said nothing for so long is not one that is merely late.
+# A driver that has said nothing for so long is not merely late.
 SILENT_S = 1.0
 
 
@@ -28,12 +28,12 @@ class SilenceMonitor:
         """Looks at the newest reading.
 
         Args:
-            reading: None before the first.
+            reading: Newest reading; None before the first.
             passed_s: Time since the last look, s.
 
         Returns:
-            For how long it has been the same, s; nobody need be told of less than
-            `SILENT_S`.
+            Time for which it has been the same, s; less than `SILENT_S` need not be
+            told.
         """
         sequence = None if reading is None else reading.sequence
         is_new = sequence != self._sequence
@@ -50,7 +50,8 @@ class DeviceWatch:
 
     Args:
         backend: The device, open.
-        should_recover: Says, while the device is at fault, whether to take it up again.
+        should_recover: Function that tells, while the device is at fault, whether to
+            take it up again.
     """
 
     def __init__(self, backend: DeviceBackend, should_recover: Callable[[], bool]):
@@ -80,12 +81,12 @@ class DeviceWatch:
             self._backend.recover()
 
     def _note(self, fault: Fault) -> None:
-        """Books that a fault has come or gone."""
+        """Records that a fault has come or gone."""
         if fault == Fault.NONE:
             self._recoveries += 1
         else:
             self._faults[fault.name] += 1
-            # A wish from before the fault was for something else.
+            # A request from before the fault was for something else.
             self._wants_it_back()
         self._fault, self._asked = fault, False
 

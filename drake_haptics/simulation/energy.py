@@ -33,10 +33,10 @@ class EnergyLedger:
     has them at the device's port. How a tick is booked, and what the sampling of a
     force can seem to create, is derived in `core/tool/tick_energy.h`.
 
-    Objects are taken to stand still: what one that moves does to the tool shows as
-    created by the source of the force. Where gains are changed in the context, the
-    tick that begins with them is left out of the books, and so is what the change puts
-    into springs or takes out.
+    Objects are taken to stand still: the work of a moving one on the tool shows as
+    created by the source of the force. Where gains are changed in the context, the tick
+    that begins with them is left out of the books, and so is the energy that the change
+    puts into springs or takes out.
     """
 
     def __init__(self, loop: HapticLoop, root: Context):
@@ -128,7 +128,7 @@ class EnergyLedger:
 
 
 def _reader(port: OutputPort, root: Context) -> Callable[[], Any]:
-    """Returns what evaluates a port."""
+    """Returns a function that evaluates a port."""
     context = port.get_system().GetMyContextFromRoot(root)
     return lambda: port.Eval(context)
 
@@ -145,7 +145,7 @@ class _Gains(NamedTuple):
 
 
 def _make_gains_reader(loop: HapticLoop, root: Context) -> Callable[[], _Gains]:
-    """Returns what reads the gains of a context."""
+    """Returns a function that reads the gains of a context."""
     coupling, penalty = loop.virtual_coupling, loop.penalty
     if penalty is None:
         own = coupling.GetMyContextFromRoot(root)
@@ -164,7 +164,7 @@ def _make_gains_reader(loop: HapticLoop, root: Context) -> Callable[[], _Gains]:
 def _make_stored_readers(
     loop: HapticLoop, root: Context, get_gains: Callable[[], _Gains]
 ) -> dict[str, Callable[[], float]]:
-    """Returns what tells the energy (J) of each source of wrench that stores some."""
+    """Returns functions of the energy (J) of each source of wrench that stores some."""
     clusters = _reader(loop.clusters, root)
 
     def contact_energy() -> float:

@@ -22,7 +22,7 @@ from drake_haptics.systems.contact.contact_clustering import (
     ClusteringRule,
 )
 
-# Of effects: label, unit, and the least and largest value to be offered.
+# Keys of effects: label, unit, and the least and largest value to be offered.
 _OF_EFFECTS = {
     "shading.crease_angle_deg": ("Crease angle", "°", 0.0, 90.0),
     "friction.coefficient": ("Friction coefficient", "", 0.0, 1.0),
@@ -36,7 +36,7 @@ _OF_EFFECTS = {
     ),
 }
 GLIDE_S = 0.2
-"""From one value to another, s: what a device's gate takes to let a force in."""
+"""Time from one value to another, s: what a device's gate takes to let a force in."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class LiveKey:
     Attributes:
         key: Key of the scene file, such as `contact.tolerance_m`.
         label: A word or two for people.
-        unit: SI, or °; empty of a ratio.
+        unit: SI unit, or °; empty for a ratio.
         low: Smallest value to be offered, in that unit; others are valid too.
         high: Largest value to be offered.
         is_logarithmic: Whether equal steps of a slider are equal ratios.
@@ -81,8 +81,8 @@ class LiveKey:
 def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
     """Returns the values of a scene that `write_live_values` writes into a context.
 
-    Of contact those that no material overrides everywhere, and the cluster size where
-    there are clusters; none under `contact.law: constraint`.
+    Of contact these are the keys that no material overrides everywhere, and the cluster
+    size where there are clusters; none under `contact.law: constraint`.
     """
     found = [
         _make_key(scene, "coupling.stiffness_N_per_m", "Stiffness", "N/m", 50.0, 5e3),
@@ -157,14 +157,14 @@ def _make_key(
 
 
 def _replace(part: Any, key: str, value: float) -> Any:
-    """Returns a copy of a dataclass with another value at a key of it."""
+    """Returns a copy of a dataclass with another value at one of its keys."""
     name, _, rest = key.partition(".")
     new = _replace(getattr(part, name), rest, value) if rest else value
     return replace(part, **{name: new})
 
 
 def _read_attribute_help(schema: type, name: str) -> str:
-    """Returns what the docstring of a dataclass says of an attribute, in one line."""
+    """Returns the entry of an attribute in a dataclass's docstring, in one line."""
     found = re.search(
         rf"^    {name}: (.+(?:\n {{8}}.+)*)", inspect.getdoc(schema) or "", re.MULTILINE
     )
@@ -172,7 +172,7 @@ def _read_attribute_help(schema: type, name: str) -> str:
 
 
 def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
-    """Writes what a scene says of its live keys into a context.
+    """Writes the live values of a scene into a context.
 
     They hold from the next tick on, in this context alone. The diagram and its
     `HapticDiagram.scene` stay as they are.
@@ -180,8 +180,8 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
     Args:
         haptic: Return value of `BuildHapticDiagram`.
         root: Context of its diagram.
-        scene: Differs from what was built in live keys and the clustering alone; see
-            `is_live_change`.
+        scene: Scene that differs from the built one in live keys and the clustering
+            alone; see `is_live_change`.
 
     Raises:
         ValueError: It differs in more, and the diagram must be built again; or a value
@@ -204,7 +204,7 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
 def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
     """Writes live values into a context whatever else its diagram was built with.
 
-    As `write_live_values`, for values that are on their way to those of the diagram.
+    It is `write_live_values` for values that still glide to those of the diagram.
     """
     contact, loop = scene.contact, haptic.loop
     gains = make_coupling_gains(scene.coupling, loop.device)
@@ -235,7 +235,7 @@ def is_live_change(built: Scene, scene: Scene) -> bool:
     """Returns whether one scene becomes the other without a new diagram.
 
     Live are the keys of `drake_haptics.live_keys` and `contact.clustering`. But where
-    passivity control finds its reserve by itself, that is a number of the stiffnesses:
+    passivity control finds its reserve by itself, the reserve depends on stiffnesses:
     another one of these needs another diagram.
     """
     passivity = scene.effects.passivity
@@ -249,7 +249,7 @@ def is_live_change(built: Scene, scene: Scene) -> bool:
 
 
 def _list_springs(scene: Scene) -> tuple[float, ...]:
-    """Returns the stiffnesses that the reserve of passivity control comes of."""
+    """Returns the stiffnesses that the reserve of passivity control depends on."""
     coupling = scene.coupling
     return (
         coupling.stiffness_N_per_m,
@@ -275,12 +275,12 @@ def _without_live_values(scene: Scene) -> Scene:
 class LiveValueRamp:
     """Interpolates live values, to be written at each tick.
 
-    A gain that rises by a factor makes a force that is held rise by as much: written
-    at once it kicks the hand on the device. Here a force changes by no more than a
-    few hundredths of itself in a tick.
+    A gain that rises by a factor raises a held force by the same factor: written at
+    once it kicks the hand on the device. Here a force changes by no more than a few
+    hundredths of itself in a tick.
 
     Attributes:
-        is_moving: Whether a value is on its way.
+        is_moving: Whether a value still glides.
     """
 
     def __init__(self, period_s: float):
@@ -300,7 +300,7 @@ class LiveValueRamp:
     def aim(self, scene: Scene) -> None:
         """Begins to interpolate to the values of a scene.
 
-        What had no value yet has the scene's at once.
+        A value that is new is the scene's at once.
 
         Args:
             scene: Scene with the goal's values.
@@ -332,9 +332,9 @@ class LiveValueRamp:
 
 
 def _blend(item: LiveKey, start: float, goal: float, share: float) -> float:
-    """Returns the value so far on the way: of gains in equal ratios.
+    """Returns the value at a share of the way; gains go in equal ratios.
 
-    A force is in proportion to a gain, but grows by so much for each meter.
+    A force is proportional to a gain, but grows linearly with a length.
     """
     if start == goal:
         return goal

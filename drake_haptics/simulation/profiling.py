@@ -50,7 +50,7 @@ _WHY = {
     "tick_log_sink": "a log: notes every tick",
     "haptic_visualizer": "draws the page or the recording",
 }
-# Of a system that this package does not know.
+# For a system that this package does not know.
 _NOT_OURS = "yours: it was added to the loop"
 REST = "Drake and the rest"
 
@@ -60,8 +60,8 @@ class CallbackTimer:
 
     Inside its block it stands between `LeafSystem` and Drake wherever a callback is
     declared; outside, systems are constructed as ever and nothing is measured. A
-    callback's time is its own: what it waits for its inputs belongs to the systems
-    that give them. Each call costs about 0.5 µs more::
+    callback's time is its own: the time that it waits for its inputs belongs to the
+    systems that give them. Each call costs about 0.5 µs more::
 
         with CallbackTimer() as timer:
             haptic = BuildHapticDiagram(scene)
@@ -122,7 +122,7 @@ class CallbackTimer:
     def calc_means(self) -> tuple[dict[System, float], float]:
         """Returns the mean time of each system and of the whole tick, s.
 
-        Both are of the middle half of the ticks, by their length.
+        Both are means over the middle half of the ticks, by their length.
         """
         if not self._ticks:
             return dict.fromkeys(self._systems, 0.0), 0.0
@@ -188,7 +188,7 @@ class Part:
 
     Attributes:
         name: Name of the system in the diagram, or "Drake and the rest".
-        system: Its class.
+        system: Class of the system.
         why: The key of the scene that asks for it, or why it is always there.
         mean_us: Time of its own, mean of the middle half of the ticks, µs.
         share: Share of the whole tick, 0 to 1.
@@ -208,9 +208,9 @@ class Part:
 def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
     """Explains a tick of a run.
 
-    A part's time is that of its own Python and of the core it calls. What is left is
-    Drake, which steps the arm's plant, calls the parts and hands values from port to
-    port; and what the run itself notes down.
+    A part's time is that of its own Python and of the core it calls. The rest is Drake,
+    which steps the arm's plant, calls the parts and hands values from port to port; and
+    what the run itself notes down.
 
     Args:
         haptic: Diagram that was run.

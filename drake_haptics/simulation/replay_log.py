@@ -64,7 +64,7 @@ def replay(
         log: Return value of `read_tick_log`.
         scene: Another scene than the log's.
         out: File for the log of this run; a temporary one if not given.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Returns:
         The log of this run.
@@ -110,7 +110,7 @@ def _run(
         if progress is not None:
             progress(f"Cutting {name} into convex pieces", share)
 
-    # How long ticks take here is not how long they took.
+    # Ticks here do not take as long as they took in the recorded run.
     unhurried = replace(scene, device=replace(scene.device, tick_budget_us=None))
     haptic = BuildHapticDiagram(
         unhurried, device=device, recorder=recorder, progress=report_cut
@@ -123,7 +123,7 @@ def _run(
     end_s = ticks * period_s
 
     def end_tick(context: Context) -> EventStatus:
-        # There are no contacts of such a tool.
+        # A tool whose pose is not finite has no contacts.
         if not math.isfinite(sum(tool.get_discrete_state(0).value().tolist())):
             raise TickLogError(
                 f"stopped at {context.get_time():.4f} s: the tool's state is not"

@@ -79,23 +79,23 @@ def run(
         pace: Waits for each tick, so that simulated time is clock time; a device needs
             it, and the system is asked for a real-time priority. As fast as it can
             where not given.
-        energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
-            each tick. Only of a simulated device: what any other does between two
+        energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in each
+            tick. Only of a simulated device: the motion of any other between two
             readings is not known.
         on_tick: Called after every tick with the diagram's context, of which it may
             change parameters alone, as `drake_haptics.simulation.live_values` does.
             Its time counts in the tick. Where it returns True the run ends.
-        context: Where to go on; becomes the simulator's. Nothing in it is initialized.
-            At the scene's start where not given.
-        statistics: Of the runs before, which this one goes on with, or of none yet;
-            its own where not given. It is filled tick by tick, and so holds what ran
-            also where an error or Ctrl-C ends the run.
+        context: Context to go on from, which becomes the simulator's; nothing in it is
+            initialized. Defaults to the scene's start.
+        statistics: Statistics of the runs before, which this one goes on with, or of
+            none yet; its own where not given. It is filled tick by tick, and so holds
+            the ticks that ran also where an error or Ctrl-C ends the run.
 
     Returns:
-        What was measured.
+        Statistics of the run.
 
     Warns:
-        SceneWarning: At the end, a contact was deeper than ten tolerances, or under
+        SceneWarning: A contact was, at the end, deeper than ten tolerances, or under
             `contact.law: constraint` deep at all, and none was in the runs before.
 
     Raises:
@@ -103,7 +103,7 @@ def run(
             not simulated, or the run goes on with the statistics of others.
         RunError: The tool or the arm has a pose or velocity that is not finite.
         TypeError: An argument is of another kind; the message names it.
-        KeyboardInterrupt: At Ctrl-C.
+        KeyboardInterrupt: Ctrl-C was pressed.
     """
     require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     require_kinds(
@@ -159,7 +159,7 @@ def run(
 def _make_depth_question(
     haptic: HapticDiagram, root: Context
 ) -> Callable[[float], str]:
-    """Returns what asks about a depth (m) that the law of contact should not let be."""
+    """Returns a function that questions a depth (m) beyond the law of contact."""
     penalty = haptic.loop.penalty
     if penalty is None:
         return question_overlap
@@ -168,7 +168,7 @@ def _make_depth_question(
 
 
 def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float:
-    """Returns when a run ends; of two times a round-off apart that of a tick."""
+    """Returns the end of a run, s; a tick's time if that is a round-off apart."""
     end_s = start_s + duration_s
     tick_s = round(end_s / haptic.period_s) * haptic.period_s
     return tick_s if math.isclose(end_s, tick_s, rel_tol=1e-12) else end_s
@@ -180,7 +180,7 @@ def _make_monitor(
     on_tick: Callable[[Context], bool | None] | None,
     pace: RealTimePacer | None,
 ) -> Callable[[Context], EventStatus | None]:
-    """Returns what the simulator calls after each tick."""
+    """Returns a function that the simulator calls after each tick."""
     start_s = time.perf_counter()
 
     def monitor(context: Context) -> EventStatus | None:
@@ -208,7 +208,7 @@ def _make_measure(
     statistics: RunStatistics,
     ledger: EnergyLedger | None,
 ) -> Callable[[Context, float], None]:
-    """Returns what reads a tick's values from the context into both books."""
+    """Returns a function that records a tick's values from the context."""
     loop = haptic.loop
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
     hold = loop.device.GetSubsystemByName("rendered_force_hold")
@@ -243,7 +243,7 @@ def _make_measure(
         # A handle that is lost takes the tool with it.
         tool_state = tool_context.get_discrete_state(0).value()
         if not math.isfinite(sum(tool_state.tolist())):
-            # There are no contacts of such a tool.
+            # A tool whose state is not finite has no contacts.
             statistics.add(tick_s, 0.0, 0, 0, math.inf, shown)
             raise RunError(
                 f"stopped at {context.get_time():.4f} s: the tool's state is not"

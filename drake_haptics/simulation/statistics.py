@@ -19,7 +19,7 @@ from drake_haptics.systems.device.rendered_force_hold import LIMITED, NOT_FINITE
 # Distributions are those of the latest ticks, so that a demo left running
 # does not fill the memory; largest values and counts are of all ticks.
 _MAX_RECORDS = 1 << 20
-# A tick only notes its numbers; what they amount to is found for many at once.
+# A tick only notes its numbers; they are summed up for many ticks at once.
 _BLOCK = 1 << 8
 
 
@@ -103,7 +103,7 @@ class RunStatistics:
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
         self._latest: tuple[float, ...] = ()
-        # Memory is had as it is written: no tick has to copy it to a larger one.
+        # Memory is allocated as it is written: no tick has to copy it to a larger one.
         self._records = np.zeros((_MAX_RECORDS, 4))
         self._ticks = 0
         self._max_force_N = 0.0
@@ -211,7 +211,7 @@ class RunStatistics:
         return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": self._pace.skipped}
 
     def book(self, ledger: EnergyLedger) -> None:
-        """Tells from now on of the energy in a ledger, where the run books it."""
+        """Reports from now on the energy in a ledger, where the run books it."""
         self._ledger = ledger
 
     @property
@@ -233,10 +233,10 @@ class RunStatistics:
         Args:
             tick_s: Clock time of the whole tick, without waiting, s.
             query_s: Clock time of the contact query inside the core, s.
-            contacts: Before clustering.
-            clusters: After it.
-            distance_m: Of the nearest contact, m, negative if it penetrates; infinite
-                if there is none.
+            contacts: Number of contacts before clustering.
+            clusters: Number of clusters.
+            distance_m: Distance of the nearest contact, m, negative if it penetrates;
+                infinite without one.
             shown: (7,) state of the `RenderedForceHold`: wrench on the device
                 [τ; f], N·m and N, and status.
         """
@@ -247,10 +247,10 @@ class RunStatistics:
             self._digest()
 
     def add_shed(self, shed: float) -> None:
-        """Adds what the tick left out.
+        """Adds the load that the tick shed.
 
         Args:
-            shed: Of `LoadShedding`, 0 (nothing) to 3.
+            shed: State of `LoadShedding`, 0 (nothing) to 3.
         """
         for stage, name in enumerate(SHED_STAGES):
             self._shed_ticks[name] += int(shed > stage)

@@ -23,10 +23,11 @@ def transfer_context(
 ) -> Context:
     """Returns a context of a new diagram that continues from another's.
 
-    Time goes on, and so does the state of every system that both have: the tool, what
-    the device shows, the bristles of friction, the balance of passivity control. The
-    contact query keeps the way out of what is pressed in. A system that is new begins
-    as in a run that starts there. Gains are those of the new scene.
+    Time goes on, and so does the state of every system that both have: the tool, the
+    wrench that the device shows, the bristles of friction, the balance of passivity
+    control. The contact query keeps the way out of objects that the tool is pressed
+    into. A system that is new begins as in a run that starts there. Gains are those of
+    the new scene.
 
     A simulated arm goes on as it moves if it is the same one; else it begins at rest
     with its handle where the other was. If it does not reach that place, it begins at
@@ -56,7 +57,7 @@ def transfer_context(
         is_reached = _take_handle(new, context, find_handle(old, old_context))
     if not is_reached:
         restarted.append(new.loop.haptic_tool)
-    # A system that is new may read at its beginning what the others have.
+    # A system that is new may read states of the others at its beginning.
     copied = old.diagram, old_context, new.diagram, context, restarted
     _copy_states(*copied)
     new.diagram.ExecuteInitializationEvents(context)
@@ -81,7 +82,7 @@ def transfer_context(
 
 
 def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
-    """Returns X_WH, where the handle is.
+    """Returns X_WH, the pose of the handle.
 
     Args:
         haptic: Return value of `BuildHapticDiagram`.
@@ -170,7 +171,7 @@ def _copy_states(
 
 
 def _describe_state(context: Context) -> tuple[object, ...]:
-    """Returns how many numbers and values a state has."""
+    """Returns the numbers of values in each part of a state."""
     return (
         context.num_continuous_states(),
         context.num_abstract_states(),
@@ -187,9 +188,9 @@ def release_diagram(haptic: HapticDiagram) -> None:
     pydrake never frees one that has a system in Python: such a system keeps its diagram
     by an attribute (`ref_cycle` of its bindings), and the diagram keeps the system in
     C++, where Python's garbage collector does not see it
-    (https://github.com/RobotLocomotion/drake/issues/22515). So all attributes go. What
-    pydrake still keeps is the bare system, some 40 kB, of those that calculate an
-    output or a cache entry by a method of theirs.
+    (https://github.com/RobotLocomotion/drake/issues/22515). So all attributes go. For
+    systems that calculate an output or a cache entry by a method of theirs pydrake
+    still keeps the bare system, some 40 kB.
 
     Args:
         haptic: Diagram that no simulator, port or viewer uses any more.

@@ -29,7 +29,7 @@ def write_csv(
     missing here: the first column is the tick's number.
 
     Args:
-        reader: Reads the log; afterwards it knows what is missing.
+        reader: Reader of the log; afterwards it knows what is missing.
         stream: Text stream to write to.
         progress: Called with the current work and its share that is done, in [0, 1].
     """

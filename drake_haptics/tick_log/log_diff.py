@@ -27,11 +27,11 @@ from drake_haptics.tick_log.tick_log import TickLog
 
 
 def find_changes(before: str, after: str) -> list[str]:
-    """Returns what differs between two scenes, like `hand.grip: light, firm`.
+    """Returns the differences of two scenes, like `hand.grip: light, firm`.
 
     Args:
-        before: A scene, YAML.
-        after: Another one.
+        before: Scene, YAML.
+        after: Other scene, YAML.
     """
     old, new = (dict(_flatten(yaml.safe_load(text), "")) for text in (before, after))
     return [
@@ -85,10 +85,11 @@ class LogDiff:
         only_a: Number of ticks that only the first log has.
         only_b: Number of ticks that only the second log has.
         same_scene: Whether the same scene was recorded.
-        same_meshes: Whether it was on the same meshes.
+        same_meshes: Whether the mesh files were the same.
         settings: Differences of the scenes, each with its key and both values.
-        quantities: All that was compared: not the clocks, which differ in every run,
-            nor what a device tells besides its handle, which a replay has not.
+        quantities: Everything that was compared: not the clocks, which differ in every
+            run, nor what a device tells besides its handle, which a replay does not
+            have.
     """
 
     ticks: int
@@ -109,7 +110,7 @@ class LogDiff:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns it ready for JSON; what is not finite becomes None."""
+        """Returns it ready for JSON; infinities and NaN become None."""
         return {"is_bit_equal": self.is_bit_equal, **to_plain_data(self)}
 
 
@@ -166,7 +167,7 @@ _PARTS = {
 def iterate_differences(
     a: TickRows, b: TickRows
 ) -> Iterator[tuple[str, str, np.ndarray, np.ndarray]]:
-    """Yields for each quantity, part by part, how it differs between rows.
+    """Yields for each quantity, part by part, its differences between rows.
 
     Yields:
         Its name; the unit; (n,) the norm of the difference, of rotations the angle
@@ -193,7 +194,7 @@ def iterate_differences(
 
 
 def _calc_distance(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Returns the norms of differences; what is as infinite in both does not differ."""
+    """Returns the norms of differences; equal infinities do not differ."""
     with np.errstate(invalid="ignore", over="ignore"):
         return np.linalg.norm(np.where(x == y, 0.0, x - y), axis=1)
 
@@ -210,7 +211,7 @@ def _describe(
     ticks: np.ndarray, name: str, unit: str, norm: np.ndarray, differs: np.ndarray
 ) -> QuantityDiff:
     """Returns the figures of a quantity."""
-    at = int(np.argmax(norm))  # the first that is not a number, if there is one
+    at = int(np.argmax(norm))  # the first NaN, if there is one
     return QuantityDiff(
         name=name,
         unit=unit,
@@ -222,21 +223,21 @@ def _describe(
     )
 
 
-# More than these are no title.
+# More differences than these do not fit a title.
 _MOST_CHANGES = 3
-# Letters in a line of it.
+# Letters in a line of the title.
 _TITLE_WIDTH = 90
 _COLORS = ("#1f77b4", "#d62728")
 
 
 def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> None:
-    """Draws the force asked for, the deepest contact and how far the tools are apart.
+    """Draws the requested force, the deepest contact and the distance of the tools.
 
     Args:
         a: One run.
-        b: Another one; drawn at the ticks that both have.
+        b: Another one, drawn at the ticks that both have.
         names: Names of the runs.
-        path: PNG, SVG or PDF by its ending.
+        path: Path of the picture, PNG, SVG or PDF by its ending.
 
     Raises:
         ValueError: Matplotlib knows no such ending.
@@ -268,7 +269,7 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
 
 
 def make_title(a: TickLog, b: TickLog, names: tuple[str, str]) -> str:
-    """Returns what two runs are called, and by what their scenes differ.
+    """Returns a title: the names of two runs, and the differences of their scenes.
 
     Args:
         a: One run.

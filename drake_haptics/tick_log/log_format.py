@@ -43,7 +43,7 @@ class TickLogHeader:
         period_s: The tick, s.
         scene: The scene file, YAML, with mesh paths that hold from any folder.
         mesh_sha256: SHA-256 (hex) of each mesh file of the scene by its path.
-        X_WB: (7) where the device's base stood, [qw qx qy qz x y z], m.
+        X_WB: (7,) pose of the device's base, [qw qx qy qz x y z], m.
     """
 
     program_version: str
@@ -70,7 +70,7 @@ def read_header(stream: BinaryIO, name: str) -> TickLogHeader:
         name: Name of the file, for messages.
 
     Raises:
-        TickLogError: It is no log, of another version, or damaged.
+        TickLogError: The file is no log, of another version, or damaged.
     """
     head = stream.read(_FILE_HEAD.size)
     if len(head) < _FILE_HEAD.size or not head.startswith(FILE_MAGIC):
@@ -101,10 +101,10 @@ def read_header(stream: BinaryIO, name: str) -> TickLogHeader:
 
 
 def _parse_header(facts: object) -> TickLogHeader:
-    """Returns what JSON says.
+    """Returns the header that JSON holds.
 
     Raises:
-        ValueError: It does not say it all, or in another way.
+        ValueError: A part is missing, or has another form.
     """
     names = {field.name for field in fields(TickLogHeader)}
     if not isinstance(facts, dict) or not names <= facts.keys():
@@ -141,7 +141,7 @@ def hash_file(path: str) -> str:
 
 
 def find_changed_meshes(header: TickLogHeader) -> list[str]:
-    """Returns the mesh files that are gone or no longer what was recorded on."""
+    """Returns the mesh files that are gone or have changed since the recording."""
 
     def is_same(path: str, sha256: str) -> bool:
         try:
@@ -179,12 +179,12 @@ REALS: dict[str, tuple[str, ...]] = {
 COUNTS = ("contacts", "clusters", "status", "sequence", "buttons", "gate", "fault")
 
 NUM_REALS = sum(map(len, REALS.values()))
-# Where the vectors start that are signals of the loop.
+# Index of the first vector that is a signal of the loop.
 FIRST_SIGNAL = 5
 SIGNALS = tuple(REALS)[FIRST_SIGNAL:]
-# What depends on the computer and its load, and so differs in every run.
+# Quantities that depend on the computer and its load, and so differ in every run.
 CLOCK_QUANTITIES = ("clock_s", "query_s", "device_time_s")
-# What a device tells of itself besides its handle. A replay has no device.
+# Quantities of a device besides its handle. A replay has no device.
 DEVICE_QUANTITIES = ("sequence", "buttons", "gate", "fault")
 
 
@@ -203,13 +203,13 @@ SLICES = _find_slices()
 class TickRows:
     """Ticks of a log, one row each.
 
-    A row is what the updates of its tick saw: all of it is of the same instant, before
-    the tick changes anything.
+    A row holds the values that the updates of its tick saw: all are of the same
+    instant, before the tick changes anything.
 
     Attributes:
         ticks: (n,) int64, numbers of the ticks, from 0 on, rising.
         reals: (n, 43) doubles, the quantities of `REALS` one after another.
-        counts: (n, 7) uint32, those of `COUNTS`.
+        counts: (n, 7) uint32, the quantities of `COUNTS`.
     """
 
     ticks: np.ndarray
@@ -265,7 +265,7 @@ MAX_TICK = 1 << 48
 _BLOCK_HEAD = struct.Struct("<8sQIII")
 BLOCK_HEADER_BYTES = _BLOCK_HEAD.size + _CRC.size
 _ROW_BYTES = 8 * NUM_REALS + 4 * len(COUNTS)
-# What zlib makes of bytes that it cannot shorten is longer by less than this.
+# zlib makes bytes that it cannot shorten longer by less than this.
 _MAX_PAYLOAD_BYTES = MAX_BLOCK_TICKS * _ROW_BYTES + 4096
 
 
@@ -274,7 +274,7 @@ class BlockHeader:
     """The header before a block's payload.
 
     Attributes:
-        first_tick: Number of its first tick; in the end mark, the number of all ticks.
+        first_tick: Number of the first tick; in the end mark, the number of all ticks.
         ticks: Number of ticks in it; 0 in the mark that ends a complete log.
         payload_bytes: Length of the packed ticks.
         payload_crc: CRC-32 of the packed ticks.
@@ -291,8 +291,8 @@ def pack_block(first_tick: int, reals: np.ndarray, counts: np.ndarray) -> bytes:
 
     Args:
         first_tick: Number of the first tick, as in `BlockHeader`.
-        reals: (n, 43) doubles.
-        counts: (n, 7) uint32.
+        reals: (n, 43) doubles, as in `TickRows`.
+        counts: (n, 7) uint32, as in `TickRows`.
     """
     payload = b""
     if len(reals):
@@ -307,7 +307,7 @@ def pack_block(first_tick: int, reals: np.ndarray, counts: np.ndarray) -> bytes:
 def parse_block_header(data: bytes) -> BlockHeader | None:
     """Returns a block's header; None if these bytes are not a sound one.
 
-    What it says of lengths is within bounds, so that it can be believed.
+    Its lengths are within bounds, so that they can be believed.
     """
     if len(data) < BLOCK_HEADER_BYTES:
         return None
@@ -328,7 +328,7 @@ def parse_block_header(data: bytes) -> BlockHeader | None:
 
 
 def unpack_block(header: BlockHeader, payload: bytes) -> TickRows | None:
-    """Returns the ticks of a block; None if the payload is not what was packed."""
+    """Returns the ticks of a block; None if the payload is damaged."""
     if zlib.crc32(payload) != header.payload_crc:
         return None
     n = header.ticks
@@ -349,7 +349,7 @@ def unpack_block(header: BlockHeader, payload: bytes) -> TickRows | None:
 
 
 def _shuffle(values: np.ndarray, word: str) -> bytes:
-    """Returns what is left of columns of smooth numbers, like bytes together.
+    """Returns differences of columns of smooth numbers, like bytes together.
 
     Neighbors in time share sign, exponent and leading bits: of the difference of
     their bit patterns these bytes are zero.
@@ -361,7 +361,7 @@ def _shuffle(values: np.ndarray, word: str) -> bytes:
 
 
 def _unshuffle(raw: bytes, ticks: int, word: str) -> np.ndarray:
-    """Returns the bit patterns (ticks, columns) that `_shuffle` made these bytes of."""
+    """Returns the bit patterns (ticks, columns) that `_shuffle` turned into bytes."""
     size = np.dtype(word).itemsize
     planes = np.frombuffer(raw, np.uint8).reshape(-1, size, ticks)
     steps = np.ascontiguousarray(planes.transpose(2, 0, 1)).view(word)[..., 0]

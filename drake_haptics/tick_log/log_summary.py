@@ -1,4 +1,4 @@
-"""A summary of what a log holds, in figures."""
+"""Sums up a log in figures."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ class LogSummary:
         max_force_N: Largest force that was asked for, N.
         max_torque_Nm: Largest torque, N·m.
         max_penetration_m: Deepest contact, m.
-        max_contacts: Most contacts of a tick.
-        limited_ticks: Ticks at which the device's limits cut what was asked for.
+        max_contacts: Largest number of contacts in a tick.
+        limited_ticks: Number of ticks at which the device's limits cut the requested
+            wrench.
         longest_wait_s: Longest time from one tick to the next by the clock, s.
     """
 
@@ -54,7 +55,7 @@ class LogSummary:
     longest_wait_s: float
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns it ready for JSON; what is not finite becomes None."""
+        """Returns it ready for JSON; infinities and NaN become None."""
         plain: dict[str, Any] = to_plain_data(self)
         return plain
 

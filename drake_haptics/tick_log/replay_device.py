@@ -23,9 +23,9 @@ class ReplayDevice(DeviceBackend):
     k at its tick k. After the last tick, or the first gap of the log, it stays. It
     shows no force: a recorded hand does not yield.
 
-    The readings are those of the recorded loop but for the round-off of going from
-    the world into the base's frame and back. `drake_haptics.simulation.replay_log`
-    gives the loop the very same bits.
+    The readings are those of the recorded loop but for the round-off of going from the
+    world into the base's frame and back. `drake_haptics.simulation.replay_log` gives
+    the loop exactly the same bits.
     """
 
     def __init__(self, log: TickLog):
@@ -52,12 +52,12 @@ class ReplayDevice(DeviceBackend):
 
     @property
     def is_placed(self) -> bool:
-        """True."""
+        """Always True."""
         return True
 
     @property
     def shows_force(self) -> bool:
-        """False."""
+        """Always False."""
         return False
 
     def read(self) -> DeviceReading:

@@ -47,11 +47,11 @@ class EndMark:
 
 
 def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
-    """Yields what a log holds, from where its stream is to its end.
+    """Yields the content of a log, from the stream's position to its end.
 
-    Of a damaged block nothing is yielded but the damage; the search goes on at the next
-    one that is sound. Ticks rise from block to block: one that comes again counts as
-    damage. It never reads more at once than the largest block takes.
+    A damaged block yields only the damage; the search goes on at the next one that is
+    sound. Ticks rise from block to block: one that comes again counts as damage. It
+    never reads more at once than the largest block takes.
 
     Args:
         stream: The file, after its head; can seek.
@@ -84,7 +84,7 @@ def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
 
 
 def _find_block_header(stream: BinaryIO, start: int, size: int) -> int:
-    """Returns where the next sound header is, at `start` or later; `size` if none."""
+    """Returns the offset of the next sound header from `start` on; `size` if none."""
     stream.seek(start)
     window = b""
     while data := stream.read(_SEARCHED_BYTES):
@@ -160,7 +160,7 @@ class TickLogReader:
 
     Attributes:
         header: Header of the log.
-        gaps: Gaps of what has been read so far.
+        gaps: Gaps in the part that has been read so far.
         damaged_blocks: Places that could not be read so far.
     """
 
@@ -225,7 +225,7 @@ def read_tick_log(
     on the way. `TickLogReader` takes it block by block.
 
     Args:
-        path: The file. It may be truncated or damaged, or still be written.
+        path: Path of the file. It may be truncated or damaged, or still be written.
         progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:

@@ -24,10 +24,10 @@ from drake_haptics.tick_log.log_format import (
     pack_header,
 )
 
-# How often what has been recorded is handed to the system, s.
+# Time between two writes of what has been recorded, s.
 _WRITE_PERIOD_S = 0.25
 _CHUNK_TICKS = 1024
-# How much may wait for a slow disk: 256 Ki ticks, 100 MB, four minutes at 1 kHz.
+# Most ticks that may wait for a slow disk: 100 MB, four minutes at 1 kHz.
 _MAX_CHUNKS = 256
 
 
@@ -45,7 +45,7 @@ def _create(path: Path, head: bytes) -> BinaryIO:
     """Returns a new file that begins with these bytes.
 
     Raises:
-        OSError: The system refuses; names the file.
+        OSError: The system refuses; the error names the file.
     """
     stream = open(path, "wb", buffering=0)
     try:
@@ -171,7 +171,7 @@ class TickRecorder:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Closes the log; what went wrong before is worth more than what now does."""
+        """Closes the log; an error from before is worth more than one from closing."""
         try:
             self.close()
         except TickLogError:
@@ -179,7 +179,7 @@ class TickRecorder:
                 raise
 
     def _write_all(self) -> None:
-        """Writes until told to stop: what the thread does."""
+        """Writes until told to stop; runs in the thread."""
         stopped = False
         try:
             while not stopped:

@@ -24,8 +24,8 @@ from drake_haptics.common.errors import HapticsError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Pose
 
-# From where the camera looks, by the name of the view. Straight down it would not know
-# what is up.
+# Directions from which the camera looks, by the name of the view. Straight down it
+# would not know where up is.
 _VIEWS = {
     "fit": (0.48, -0.74, 0.47),
     "front": (0.0, -1.0, 0.0),
@@ -36,7 +36,7 @@ CAMERAS = tuple(_VIEWS)
 # Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
 _HALF_VIEW_RAD = np.deg2rad(35.0)
 _PLAYER = "recording_player.html"
-# Where the player wants its numbers.
+# Mark in the player that is replaced by its numbers.
 _TRACES = "/* the traces */"
 
 
@@ -81,7 +81,7 @@ def aim_camera(
     """Points the camera at where tool and objects meet.
 
     Args:
-        meshcat: Whose camera.
+        meshcat: Meshcat whose camera is aimed.
         p_WP: (n, 3) points to be seen, m, as of `find_framed_points`.
         view: One of `CAMERAS`.
         within: Share of the picture's height, about its middle, that must hold it.
@@ -108,9 +108,9 @@ def aim_camera(
 
 
 def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
-    """Returns points (n, 3) of the world, m, that are to be in the picture.
+    """Returns points (n, 3) of the world, m, that must be in the picture.
 
-    Of large surroundings only what is within a tool's size of the hand's path is
+    Of large surroundings only the part within a tool's size of the hand's path is
     framed.
     """
     vertices = haptic.tool.mesh.vertices
@@ -129,7 +129,7 @@ def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
         mesh = decomposition.mesh
         corners = _transform(item.pose, mesh.vertices)
         framed.append(corners[np.all((corners > low) & (corners < high), axis=1)])
-        # Of a facet that is larger than all that is framed no corner may be there.
+        # A facet that is larger than everything framed may have no corner there.
         facets = corners[mesh.triangles]
         is_large = np.ptp(facets, axis=1).max(axis=1) > size
         is_near = np.all((facets.max(1) > low) & (facets.min(1) < high), axis=1)
@@ -138,12 +138,12 @@ def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
 
 
 def clip_facet(p_WF: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Returns the corners (n, 3) of what a box leaves of a flat convex facet.
+    """Returns the corners (n, 3) of a flat convex facet's part in a box.
 
-    By Sutherland and Hodgman: one plane of the box after the other cuts it.
+    By Sutherland and Hodgman's algorithm: one plane of the box after the other cuts it.
 
     Args:
-        p_WF: (k, 3) its corners in order, m.
+        p_WF: (k, 3) corners of the facet in order, m.
         low: (3,) least coordinates of the box, m.
         high: (3,) largest coordinates, m.
     """
@@ -181,14 +181,14 @@ def write_recording(
 ) -> None:
     """Writes the page as one HTML file that needs nothing else.
 
-    Below the scene are force and torque over time, and what plays, stops and moves
-    through both.
+    Below the scene are force and torque over time, and the controls that play, stop and
+    move through both.
 
     Args:
-        meshcat: Whose recording has been published.
+        meshcat: Meshcat whose recording has been published.
         path: The file to write.
         title: Heading of the legend.
-        felt: (n, 3) as `HapticVisualizer.recorded_sizes`.
+        felt: (n, 3) sizes, as of `HapticVisualizer.recorded_sizes`.
         max_force_N: The device's largest force, N.
         max_torque_Nm: The device's largest torque, N·m.
         has_friction: Whether friction is drawn.

@@ -15,7 +15,7 @@ from drake_haptics.web.messages import Telemetry, Tick
 
 # Meshcat's camera sees 75° from the lower to the upper edge.
 HEIGHT_PER_DEPTH = 2.0 * math.tan(math.radians(75.0) / 2.0)
-# Nearer to the camera, and behind it, the picture would stand still, m.
+# Nearest distance from the camera at which a point is seen, m.
 LEAST_DEPTH_M = 0.01
 
 
@@ -38,9 +38,9 @@ def measure_height(
     None for a point that is not before the camera, or nowhere.
 
     Args:
-        p_WQ: (3,) the point, m.
+        p_WQ: (3,) point, m.
         R_WC: (9,) axes of the camera, row by row.
-        p_WC: (3,) where the camera is, m.
+        p_WC: (3,) position of the camera, m.
     """
     *_, near = _see(p_WQ, R_WC, p_WC)
     return HEIGHT_PER_DEPTH * -near if LEAST_DEPTH_M <= -near < math.inf else None
@@ -49,14 +49,14 @@ def measure_height(
 def find_in_view(
     p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
 ) -> list[float] | None:
-    """Returns where a point is seen: right and up of the middle, in heights.
+    """Returns the place of a point in the view: right and up of the middle, in heights.
 
     None for a point that is not before the camera, or nowhere.
 
     Args:
-        p_WQ: (3,) the point, m.
+        p_WQ: (3,) point, m.
         R_WC: (9,) axes of the camera, row by row.
-        p_WC: (3,) where the camera is, m.
+        p_WC: (3,) position of the camera, m.
     """
     height_m = measure_height(p_WQ, R_WC, p_WC)
     if height_m is None:
@@ -68,7 +68,7 @@ def find_in_view(
 def _see(
     p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
 ) -> list[float]:
-    """Returns where a point is from the camera: right, up and near, m."""
+    """Returns the position of a point from the camera: right, up and near, m."""
     return turn_into_view([q - c for q, c in zip(p_WQ, p_WC, strict=True)], R_WC)
 
 
@@ -76,7 +76,7 @@ TRACE_STEP_S = 4e-3
 
 
 class Trace:
-    """Thins ticks: of each `TRACE_STEP_S` of simulated time the largest values."""
+    """Thins ticks: keeps the largest values of each `TRACE_STEP_S` simulated."""
 
     def __init__(self) -> None:
         self._step = -math.inf
@@ -113,7 +113,7 @@ class Trace:
         }
 
 
-# Times are those of so many latest ticks, rates those of so many seconds.
+# Times are over this many latest ticks, rates over this many seconds.
 _LATEST = 1000
 _RATE_SPAN_S = 1.0
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -126,7 +126,7 @@ class FrameMaker:
         """Starts with no tick.
 
         Args:
-            shed_stages: Names of what is left out in ticks that take too long.
+            shed_stages: Names of the stages that ticks that take too long leave out.
         """
         self._shed_stages = shed_stages
         self._trace = Trace()
@@ -139,7 +139,7 @@ class FrameMaker:
     def make(self, packet: Telemetry) -> dict[str, Any]:
         """Returns a frame for the page, without whether it drives.
 
-        What is not known is None. Vectors `f` and `tau` are right, up and near in the
+        Unknown values are None. Vectors `f` and `tau` are right, up and near in the
         page's picture, and so are the world's `axes`; `handle` is right and up of its
         middle in heights of it, which is `height_m` there.
         """
@@ -212,7 +212,7 @@ def _describe_contact(ticks: Sequence[Tick]) -> dict[str, float | None]:
 def _describe(
     seconds: Sequence[float], shares: dict[str, float]
 ) -> dict[str, float] | None:
-    """Returns quantiles, µs, by their names; None of what is not known."""
+    """Returns quantiles, µs, by their names; None if nothing is known."""
     ordered = sorted(x for x in seconds if not math.isnan(x))
     if not ordered:
         return None

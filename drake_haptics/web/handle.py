@@ -33,7 +33,8 @@ def move_in_view(
 
     Args:
         X_WG: (7,) pose [qw qx qy qz x y z], m.
-        by: (3,) right, up and away, in heights of the picture at the pose's depth.
+        by: (3,) motion right, up and away, in heights of the picture at the pose's
+            depth.
         X_WC: The camera's pose.
     """
     right, up, away = by
@@ -50,8 +51,8 @@ def turn_in_view(
 
     Args:
         X_WG: (7,) pose [qw qx qy qz x y z], m.
-        by: (3,) in half turns: the side towards the viewer goes right and up, and all
-            rolls clockwise.
+        by: (3,) turns, in half turns: the side towards the viewer goes right and up,
+            and all rolls clockwise.
         X_WC: The camera's pose.
     """
     right, up, roll = by
@@ -77,10 +78,10 @@ def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.nd
 
 
 class PagePilot:
-    """Follows where a page wants the handle.
+    """Follows the handle's goal that a page asks for.
 
     Attributes:
-        X_WG: (7,) the goal [qw qx qy qz x y z], m.
+        X_WG: (7,) goal [qw qx qy qz x y z], m.
     """
 
     def __init__(self, X_WStart: RigidTransform, radius_m: float):
@@ -109,9 +110,9 @@ class PagePilot:
 
 
 class PageHandle(DeviceBackend):
-    """A device that is moved by what pages ask for; somebody else talks with them.
+    """A device that is moved by requests of pages; another part talks with them.
 
-    When nobody asks the handle stays where it is.
+    Without requests the handle stays where it is.
     """
 
     def __init__(
@@ -136,12 +137,12 @@ class PageHandle(DeviceBackend):
 
     @property
     def is_placed(self) -> bool:
-        """True."""
+        """Always True."""
         return True
 
     @property
     def shows_force(self) -> bool:
-        """False."""
+        """Always False."""
         return False
 
     @property
@@ -157,7 +158,7 @@ class PageHandle(DeviceBackend):
             X_WC: Pose of the page's camera.
 
         Returns:
-            Whether it was something for a handle. What is not is not counted.
+            Whether it was for a handle; if not, it is not counted.
         """
         match asked.get("do"):
             case "move":
@@ -178,7 +179,7 @@ class PageHandle(DeviceBackend):
         self._rejected += 1
 
     def read(self) -> DeviceReading:
-        """Returns where the handle is now."""
+        """Returns the reading of now."""
         now_s = monotonic()
         X_WG = self._pilot.X_WG
         if X_WG is not self._reached_for:
@@ -188,7 +189,7 @@ class PageHandle(DeviceBackend):
         return self._handle.read(now_s)
 
     def write(self, command: DeviceCommand) -> None:
-        """Shows a wrench from now on: to those who read it back."""
+        """Shows a wrench from now on, to those who read it back."""
         self._handle.show(command)
 
     def close(self) -> None:
@@ -196,5 +197,5 @@ class PageHandle(DeviceBackend):
         self._handle.release()
 
     def get_link_status(self) -> LinkStatus:
-        """Returns how many requests of pages were taken and refused."""
+        """Returns the numbers of requests of pages that were taken and refused."""
         return LinkStatus(received=self._received, rejected=self._rejected)

@@ -25,7 +25,7 @@ def open_page_port(port: int | None = None) -> socket.socket:
     """Returns a socket that listens on a port of this machine, for it alone.
 
     Args:
-        port: None takes the first free one from `FIRST_PORT` on.
+        port: Port; None takes the first free one from `FIRST_PORT` on.
 
     Raises:
         HapticsError: The port cannot be used.
@@ -45,7 +45,7 @@ def open_page_port(port: int | None = None) -> socket.socket:
 
 _PROCESS = "drake_haptics.web.process"
 _SOCKET_BYTES = 1 << 18
-# Of messages of pages, at once: a flood takes no more of a tick than these.
+# Most messages of pages at once: a flood takes no more of a tick than these.
 _MOST_HEARD = 8
 _END_S = 3.0
 # A process that ends sooner would do so again.
@@ -61,7 +61,7 @@ class PageLink:
     """
 
     def __init__(self, meshcat_url: str, listener: socket.socket | None = None):
-        """Starts the process; waits for nobody.
+        """Starts the process, without waiting for it.
 
         Args:
             meshcat_url: Address of the Meshcat that the page shows.
@@ -75,7 +75,7 @@ class PageLink:
         self._url = f"http://localhost:{self._listener.getsockname()[1]}/"
         parts = urlsplit(meshcat_url)
         self._origin = f"{parts.scheme}://{parts.netloc}"
-        # What a process that takes the place of another is to be told, by its name.
+        # Messages that a process is told that takes the place of another, by name.
         self._lasting: dict[str, bytes] = {}
         self._start()
 
@@ -110,7 +110,7 @@ class PageLink:
         """Sends a message that must not get lost; now or with a later call.
 
         Args:
-            message: Has one name; a newer one of that name replaces it.
+            message: Message with one name; a newer one of that name replaces it.
         """
         [name] = message
         self._lasting[name] = json.dumps(message).encode()
@@ -135,7 +135,7 @@ class PageLink:
         return True
 
     def hear(self) -> list[dict[str, Any]]:
-        """Returns what pages have asked for since, the oldest few."""
+        """Returns the oldest few of the new requests of pages."""
         heard: list[dict[str, Any]] = []
         try:
             while len(heard) < _MOST_HEARD:
@@ -156,7 +156,7 @@ class PageLink:
         self._start()
 
     def _let_go(self) -> None:
-        """Closes what led to a process that has ended."""
+        """Closes the connections to a process that has ended."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         self._socket.close()
@@ -165,7 +165,7 @@ class PageLink:
         """Ends the page and its process; may be called again.
 
         Args:
-            why: Told to the pages.
+            why: Reason that the pages are told.
         """
         assert self._process.stdin is not None
         if self._process.stdin.closed:

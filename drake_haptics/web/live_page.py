@@ -16,7 +16,7 @@ from drake_haptics.web.messages import TickBuffer
 
 # Nothing is drawn there; see `PageCamera.look`.
 _NUDGE = "/page_camera"
-# What a page tells may be any number; Drake looks at the rotation itself.
+# A page may tell any number; Drake checks the rotation itself.
 _FARTHEST_M = 1e4
 
 
@@ -33,13 +33,13 @@ class PageCamera:
 
         Args:
             meshcat: The Meshcat that the page shows.
-            X_WC: Before the page tells.
+            X_WC: Pose before the page tells.
         """
         self._meshcat = meshcat
         self._set(X_WC)
 
     def look(self) -> None:
-        """Reads what the page has sent since."""
+        """Reads the poses that the page has sent since."""
         X_WC = self._meshcat.GetTrackedCameraPose()
         if X_WC is None or X_WC.IsExactlyEqualTo(self.X_WC):
             return
@@ -50,7 +50,7 @@ class PageCamera:
         self._meshcat.SetTransform(_NUDGE, RigidTransform())
 
     def close(self) -> None:
-        """Leaves nothing in the Meshcat."""
+        """Removes its part of the Meshcat."""
         self._meshcat.Delete(_NUDGE)
 
     def _set(self, X_WC: RigidTransform) -> None:
@@ -81,7 +81,7 @@ class Outlook:
 
     Attributes:
         gate: Index into `messages.GATES`.
-        p_WH: (3,) where the handle is, m.
+        p_WH: (3,) position of the handle, m.
         fault: Index into `messages.FAULTS`.
         silent_s: Time for which the device's driver has said nothing new, s.
         shed: Number of stages of work that are left out.
@@ -97,7 +97,7 @@ class Outlook:
 
 
 class LivePage:
-    """A page, and what the loop does for it, one thing at a time.
+    """A page, and the loop's work for it, one task at a time.
 
     A tick costs `note` and a look at the clock. As all of Drake's Meshcat, it is to be
     used from the thread that made the Meshcat.
@@ -113,7 +113,7 @@ class LivePage:
         X_WC: RigidTransform,
         listener: socket.socket | None = None,
     ):
-        """Starts the page's process; waits for nobody.
+        """Starts the page's process, without waiting for it.
 
         Args:
             meshcat: The Meshcat that the page shows.
@@ -146,7 +146,7 @@ class LivePage:
 
         Args:
             name: Name of the message; a newer one of that name replaces it.
-            body: Ready for JSON.
+            body: Body of the message, ready for JSON.
         """
         self._link.tell({name: body})
 
@@ -157,13 +157,13 @@ class LivePage:
 
         Args:
             now_s: Time of any clock that runs, s.
-            describe: Called if the page is to be told.
+            describe: Function that returns the state, called if the page is to be told.
         """
         due_s = self._due_s
         if now_s < due_s:
             return []
         heard: list[dict[str, Any]] = []
-        # What has waited longest, so that a slow loop leaves nothing out.
+        # The task that has waited longest, so that a slow loop leaves nothing out.
         if due_s == self._show_s:
             self._show_s = now_s + _SHOW_PERIOD_S
             self._show(now_s, describe())
@@ -180,13 +180,13 @@ class LivePage:
         """Ends the page; may be called again.
 
         Args:
-            why: Told to the pages.
+            why: Reason that the pages are told.
         """
         self._link.close(why)
         self.camera.close()
 
     def _show(self, now_s: float, outlook: Outlook) -> None:
-        """Sends what was noted."""
+        """Sends the ticks that were noted."""
         self._link.flush()
         self._link.send(
             self._ticks.take(

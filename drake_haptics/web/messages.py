@@ -20,13 +20,13 @@ KIND = b"#"
 # Names of gates on the page, by their numbers in a packet.
 GATES = ("idle", "active", "fault", "simulated", "waiting")
 ACTIVE, SIMULATED, WAITING = map(GATES.index, ("active", "simulated", "waiting"))
-# And of faults, by those of `drake_haptics.device.backend.Fault`.
+# Names of faults, by the numbers of `drake_haptics.device.backend.Fault`.
 FAULTS = ("", "stale", "not finite", "overspeed", "clock", "device")
 
 # Kind, gate, fault, stages of shed load; ticks skipped; clock, silence, s; camera's
 # R_WC row by row and p_WC, m; handle's p_WH, m.
 _HEAD = struct.Struct("=cBBBI2d12d3d")
-# Time, s; then `RunStatistics.latest`; then how late the tick was, s.
+# Time, s; then `RunStatistics.latest`; then the lateness of the tick, s.
 _TICK = struct.Struct("=14d")
 _MOST_TICKS = 512
 _LARGEST_PACKET = _HEAD.size + _MOST_TICKS * _TICK.size
@@ -43,8 +43,8 @@ class Tick:
         time_s: Simulated time, s.
         tick_s: Clock time of its work, s.
         query_s: Clock time of its contact query, s.
-        contacts: Before clustering.
-        clusters: After it.
+        contacts: Number of contacts before clustering.
+        clusters: Number of clusters.
         distance_m: Distance of the nearest contact, m, negative if it penetrates;
             infinite without a contact.
         tau_W: (3,) torque on the handle, N·m.
@@ -74,10 +74,10 @@ class Telemetry:
         shed: Number of stages of work that were left out.
         skipped: Ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
-        R_WC: (9,) the camera's axes x right, y down, z away, row by row.
-        p_WC: (3,) where the camera is, m.
-        p_WH: (3,) where the handle is, m.
-        ticks: Since the last packet.
+        R_WC: (9,) axes of the camera x right, y down, z away, row by row.
+        p_WC: (3,) position of the camera, m.
+        p_WH: (3,) position of the handle, m.
+        ticks: Ticks since the last packet.
     """
 
     gate: str
@@ -95,7 +95,7 @@ class Telemetry:
 class TickBuffer:
     """Buffers the loop's ticks until they are sent.
 
-    Where nobody takes them for long, the latest are left out.
+    If nobody takes them for long, the latest are left out.
     """
 
     def __init__(self) -> None:
@@ -108,7 +108,7 @@ class TickBuffer:
 
         Args:
             time_s: Simulated time, s.
-            latest: (12,) as `RunStatistics.latest`.
+            latest: (12,) values of `RunStatistics.latest`.
             late_s: Delay of the tick's beginning, s.
         """
         if self._end < _LARGEST_PACKET:
@@ -137,7 +137,7 @@ class TickBuffer:
             skipped: Ticks lost to stalls since the run began.
             clock_s: The loop's clock, s.
             camera: (12,) R_WC row by row and p_WC, m.
-            p_WH: (3,) where the handle is, m.
+            p_WH: (3,) position of the handle, m.
         """
         counts = gate, fault, shed, skipped
         _HEAD.pack_into(
@@ -149,7 +149,7 @@ class TickBuffer:
 
 
 def read_telemetry(packet: bytes) -> Telemetry:
-    """Returns what a packet says."""
+    """Returns the content of a packet."""
     _, gate, fault, shed, skipped, clock_s, silent_s, *places = _HEAD.unpack_from(
         packet
     )
@@ -169,7 +169,7 @@ def read_telemetry(packet: bytes) -> Telemetry:
 
 
 def _read_tick(row: tuple[float, ...]) -> Tick:
-    """Returns what a row says."""
+    """Returns the content of a row."""
     time_s, tick_s, query_s, contacts, clusters, distance_m, *wrench, _, late_s = row
     tau_x, tau_y, tau_z, f_x, f_y, f_z = wrench
     return Tick(
@@ -185,7 +185,7 @@ def _read_tick(row: tuple[float, ...]) -> Tick:
     )
 
 
-# A message moves by at most this, in heights of the view or in half turns.
+# Largest step of a message, in heights of the view or in half turns.
 _LARGEST_STEP = 1.0
 _LARGEST_NUMBER = 1e300
 _LONGEST_NAME = 64
@@ -194,14 +194,14 @@ TAKE = "take"
 """Asks that its page be the one that drives; any page may."""
 
 REFUSED = "refused"
-"""The loop is told {REFUSED: 1} of a message that is not one of those allowed."""
+"""The loop is told {REFUSED: 1} for a message that is not one of those allowed."""
 
 
 def _is_number(value: object) -> bool:
-    """Tells whether it is a number, not a truth value, and finite."""
+    """Tells whether it is a finite number, not a truth value."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    # False for what is not a number, too.
+    # False for NaN, too.
     return abs(value) <= _LARGEST_NUMBER
 
 
@@ -221,7 +221,7 @@ def _is_switch(value: object) -> bool:
     return isinstance(value, bool)
 
 
-# What goes with each verb. A name that ends in "?" may be left out.
+# The arguments of each verb. A name that ends in "?" may be left out.
 _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
     # By (right, up, away), in heights of the view at the handle's depth.
     "move": {"by": _are_steps},
@@ -244,13 +244,13 @@ _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
 
 
 def read_page_request(text: str | bytes) -> dict[str, Any] | None:
-    """Returns what a page asks for; None if it is not exactly one of those allowed.
+    """Returns a page's request; None if it is not exactly one of those allowed.
 
-    A message is JSON text: {"do": verb} and what goes with the verb, like {"do":
+    A message is JSON text: {"do": verb} and the arguments of the verb, like {"do":
     "move", "by": [0.1, 0, 0]}. Whether there is such a key or name is not known here.
 
     Args:
-        text: The message as it came; bytes are never right.
+        text: Message as it came; bytes are never right.
     """
     if isinstance(text, bytes):
         return None

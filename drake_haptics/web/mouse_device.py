@@ -23,11 +23,11 @@ _NO_FIGURES = (NOT_KNOWN,) * 5
 class MouseDevice(PageHandle):
     """A pointer, on a page that shows the Meshcat, moves and turns the handle.
 
-    The page is the cockpit of `drake-haptics run` with what applies here: force and
-    torque, the gate, and the pointer, which it can hand to Meshcat's own control of the
-    camera and take back. Where the camera goes, the directions of the pointer go with
-    it. When no page is open the handle stays where it is. A process of its own serves
-    the page, so that talking with it does not delay the loop.
+    The page is the cockpit of `drake-haptics run` with the parts that apply here: force
+    and torque, the gate, and the pointer, which it can hand to Meshcat's own control of
+    the camera and take back. Where the camera goes, the directions of the pointer go
+    with it. When no page is open the handle stays where it is. A process of its own
+    serves the page, so that talking with it does not delay the loop.
 
     As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
     """
@@ -43,7 +43,7 @@ class MouseDevice(PageHandle):
         max_torque_Nm: float,
         port: int | None = None,
     ):
-        """Starts to serve the page; waits for nobody to look at it.
+        """Starts to serve the page, without waiting for a browser.
 
         Args:
             meshcat: The Meshcat that the page shows.
@@ -52,7 +52,7 @@ class MouseDevice(PageHandle):
             workspace_radius_m: Largest distance of the handle from there, m.
             max_force_N: Force of a full bar, N.
             max_torque_Nm: Torque of a full bar, N·m.
-            port: TCP port of the page; as `open_page_port`.
+            port: TCP port of the page, as for `open_page_port`.
 
         Raises:
             ValueError: A pose is not finite, or the radius or a limit out of range.
@@ -86,7 +86,7 @@ class MouseDevice(PageHandle):
         return self._page.url
 
     def read(self) -> DeviceReading:
-        """Returns where the handle is now."""
+        """Returns the reading of now."""
         for asked in self._page.act(monotonic(), self._describe):
             if not self.obey(asked, self._page.camera.X_WC):
                 self.note_refused()
@@ -104,10 +104,10 @@ class MouseDevice(PageHandle):
         )
 
     def close(self) -> None:
-        """Tells the page that it is over, and gives up the port."""
+        """Tells the page that the run is over, and gives up the port."""
         super().close()
         self._page.close()
 
     def _describe(self) -> Outlook:
-        """Returns what else the page needs."""
+        """Returns the state that the page needs besides the ticks."""
         return Outlook(gate=self.gate, p_WH=self._p_WH)

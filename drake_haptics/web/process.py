@@ -25,7 +25,7 @@ def write_changes(changes: dict[str, Any], indent: str = "") -> str:
 
     Args:
         changes: Sections of a scene with keys and values, as `SceneChanges` has them.
-        indent: Before each line.
+        indent: Indent of each line.
     """
     lines = []
     for key, value in changes.items():
@@ -38,7 +38,7 @@ def write_changes(changes: dict[str, Any], indent: str = "") -> str:
 
 
 _CLOSE_S = 0.5
-# A loop that says nothing for so long stands still; pages are told as often.
+# Time without a word after which a loop stands still; pages are told as often, s.
 _QUIET_S = 0.5
 _STDIN = 0
 
@@ -50,15 +50,15 @@ class PageProcess:
         """Begins with no page.
 
         Args:
-            listener: Listens on the page's port.
-            link: The way to the loop, of datagrams.
+            listener: Socket that listens on the page's port.
+            link: Socket of datagrams to the loop.
             origin: Origin of the Meshcat in the page.
         """
         self._link = link
         self._server = PageServer(listener, origin, self._forward)
         self._frames = FrameMaker()
         self._why = ""
-        # When the loop last told of ticks; None before it begins.
+        # Time at which the loop last told of ticks; None before it begins.
         self._heard_s: float | None = None
 
     async def run(self) -> None:
@@ -77,21 +77,21 @@ class PageProcess:
         watch = asyncio.create_task(self._watch())
         await ended.wait()
         watch.cancel()
-        # What waits for free connections finds its socket closed.
+        # Connections that wait to be accepted find the socket closed.
         loop.set_exception_handler(lambda *_: None)
         loop.remove_reader(_STDIN)
-        # What the loop said last.
+        # Read the loop's last messages.
         self._read()
         why = self._why or "The run stopped unexpectedly."
         self._server.tell("over", json.dumps({"over": {"why": why}}))
         server.close()
-        # A page that does not answer is not waited for.
+        # Pages that do not answer are not waited for.
         await asyncio.wait(
             [asyncio.create_task(server.wait_closed())], timeout=_CLOSE_S
         )
 
     def _read(self) -> None:
-        """Reads what the loop has sent."""
+        """Reads the messages of the loop."""
         with suppress(BlockingIOError):
             while packet := self._link.recv(LARGEST_DATAGRAM):
                 if packet.startswith(KIND):
@@ -110,7 +110,7 @@ class PageProcess:
                     self._server.say(json.dumps({"quiet": {"for_s": quiet_s}}))
 
     def _take(self, message: dict[str, Any]) -> None:
-        """Does what a message of the loop says."""
+        """Does what a message of the loop asks for."""
         [(name, body)] = message.items()
         if name == "over":
             self._why = body["why"]
@@ -122,7 +122,7 @@ class PageProcess:
         self._server.tell(name, json.dumps(message))
 
     async def _forward(self, asked: dict[str, Any]) -> None:
-        """Passes on what a page asks for; waits while the loop does not listen."""
+        """Passes on a page's request; waits while the loop does not listen."""
         loop = asyncio.get_running_loop()
         with suppress(OSError):
             await loop.sock_sendall(self._link, json.dumps(asked).encode())

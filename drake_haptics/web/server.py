@@ -45,15 +45,15 @@ def read_page_file(path: str) -> tuple[bytes, str] | None:
 _OWN_NAMES = ("localhost", "127.0.0.1")
 # A page speaks once a frame; more than this would only take time from the loop.
 _MESSAGE_PAUSE_S = 0.002
-# Who asks for what nobody may, or does not drive, is heard less: many such would keep
-# the page that drives waiting.
+# Pages that ask for something forbidden, or do not drive, are heard less: many such
+# would keep the page that drives waiting.
 _REFUSED_PAUSE_S = 0.1
 _LONGEST_MESSAGE = 256
 _CLOSE_S = 0.5
 # A page that reads too slowly misses frames.
 _MOST_UNREAD_BYTES = 1 << 16
 
-# Whatever a stranger sends to the port is no matter for the terminal.
+# Whatever a stranger sends to the port does not belong on the terminal.
 _logger = logging.getLogger(f"{__name__}.websockets")
 _logger.setLevel(logging.CRITICAL)
 
@@ -62,8 +62,8 @@ class PageServer:
     """A page that people on this machine open, of which one at a time drives.
 
     The page that came last drives, until another one asks to; when it goes, the one
-    that drove before it. Pages of other origins cannot connect, and what does not
-    drive cannot ask for anything else.
+    that drove before it. Pages of other origins cannot connect, and a page that does
+    not drive cannot ask for anything else.
     """
 
     def __init__(
@@ -75,9 +75,9 @@ class PageServer:
         """Takes over a port.
 
         Args:
-            listener: Listens on a port of this machine.
+            listener: Socket that listens on a port of this machine.
             frame_origin: Origin of the Meshcat: the only stranger on the page.
-            forward: Called with what the page that drives asks for, and with
+            forward: Called with the requests of the page that drives, and with
                 {REFUSED: 1} for every message that was refused.
         """
         self._listener = listener
@@ -116,7 +116,7 @@ class PageServer:
         self.say(message)
 
     def say(self, message: str) -> None:
-        """Tells every page something that those who come later need not know.
+        """Tells every page something that later ones need not know.
 
         Args:
             message: JSON text.
@@ -151,7 +151,7 @@ class PageServer:
             self._pages.remove(page)
 
     async def _hear(self, page: ServerConnection, text: str | bytes) -> bool:
-        """Passes on what a page may ask for; returns whether it may."""
+        """Passes on a page's request if it is allowed; returns whether it is."""
         asked = read_page_request(text)
         if asked is not None and asked["do"] == TAKE:
             self._pages.remove(page)

@@ -29,8 +29,8 @@ def one_blas_thread() -> threadpool_limits:
 def on_one_blas_thread(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Returns a function whose linear algebra runs on one thread.
 
-    To be used as a decorator. A call costs about a millisecond, and nothing where it
-    comes from another such function.
+    It is a decorator. A call costs about a millisecond, and nothing from within another
+    such function.
     """
 
     @wraps(function)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-# What JSON has no form for is an object with one of these keys.
+# Values that JSON has no form for are objects with one of these keys.
 _ARRAY = "$array"
 _COMPLEX = "$complex"
 _DICT = "$dict"
@@ -31,16 +31,16 @@ def to_exact_json(value: Any) -> str:
             lists, tuples and dicts of these.
 
     Raises:
-        ValueError: Something else is in it; the message says where.
+        ValueError: The value holds something else; the message says where.
     """
     return json.dumps(_encode(value, ""), separators=(",", ":"), allow_nan=False)
 
 
 def from_exact_json(text: str) -> Any:
-    """Returns the value of which `to_exact_json` made a text; arrays are new.
+    """Returns the value that `to_exact_json` wrote as a text; arrays are new.
 
     Raises:
-        ValueError: It is no such text.
+        ValueError: The text is not one of `to_exact_json`.
     """
     try:
         return _decode(json.loads(text))

@@ -38,14 +38,14 @@ class SerialExecutor(Executor):
 
 @contextmanager
 def local_processes(most_useful: int) -> Iterator[Executor]:
-    """Opens a pool of fresh processes, as many as cores that this one may use.
+    """Opens a pool of fresh processes, one for each core that this one may use.
 
     The processes share no lock, thread or state of Drake with this process. They end
     soon after this process dies in whatever way, and at once if an exception leaves the
     context; Ctrl-C in a terminal is left to this process.
 
     Args:
-        most_useful: More processes than this are not started.
+        most_useful: Largest number of processes to start.
     """
     pool = ProcessPoolExecutor(
         min(cpu_count(), most_useful),
@@ -59,7 +59,7 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
         try:
             yield pool
         except BaseException:
-            pool.shutdown(kill_workers=True)  # nobody waits for what the workers are at
+            pool.shutdown(kill_workers=True)  # nobody waits for their tasks
             raise
         pool.shutdown()
 

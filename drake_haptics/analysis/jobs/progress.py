@@ -14,7 +14,7 @@ from rich.progress import (
 
 
 class StudyProgress:
-    """A line at the foot of the terminal, gone when the study is.
+    """A line at the foot of the terminal, removed when the study ends.
 
     ::
 
@@ -24,7 +24,7 @@ class StudyProgress:
     Where the output is not a terminal it writes nothing.
 
     Args:
-        what: Name of what is computed.
+        what: Name of the computation.
         console: Console to write to. Defaults to stderr.
     """
 
@@ -49,9 +49,9 @@ class StudyProgress:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Takes the line away."""
+        """Removes the line."""
         self._bar.stop()
 
     def __call__(self, done: int, total: int) -> None:
-        """Shows that so many tasks of all are done."""
+        """Shows the numbers of tasks that are done and of all."""
         self._bar.update(self._task, completed=done, total=total)

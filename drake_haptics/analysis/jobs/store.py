@@ -43,7 +43,8 @@ class StudyFunction:
         """Identifies a top-level function, a partial of one, or a callable dataclass.
 
         Raises:
-            ValueError: It is another thing, or something that is no data is bound.
+            ValueError: The function is of another kind, or something other than data is
+                bound to it.
         """
         described = json.dumps([PACKAGE_VERSION, _describe(function, "function")])
         digest = hashlib.sha256(described.encode()).hexdigest()[:16]
@@ -55,7 +56,7 @@ class StudyFunction:
 
 
 def _name_whole(function: Any) -> str:
-    """Returns the name, with those of functions that are bound to it in brackets."""
+    """Returns the name, with the names of functions bound to it in brackets."""
     if _has_name(function):
         return _name(function)
     if isinstance(function, functools.partial):
@@ -140,10 +141,10 @@ class StudyStore:
     """A file of JSON lines, one for each task that is done.
 
     Each line stands on its own: the function's name and the hash of what is bound to
-    it, version of this package, key, task, result, and a hash over all that. It is
-    handed to the operating system as soon as the result is there, so that killing the
-    program loses nothing that was reported done, and goes to the disk when the store
-    is closed. One program at a time may have it open.
+    it, version of this package, key, task, result, and a hash over all that. The line
+    is handed to the operating system as soon as the result is there, so that killing
+    the program loses nothing that was reported done, and goes to the disk when the
+    store is closed. One program at a time may have it open.
 
     Args:
         path: Path of the file, which is created if it does not exist.
@@ -172,7 +173,7 @@ class StudyStore:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Brings all to the disk and closes the file."""
+        """Writes everything to the disk and closes the file."""
         with self._stream:
             self._stream.flush()
             os.fsync(self._stream.fileno())
@@ -185,7 +186,7 @@ class StudyStore:
         Lines that are torn or damaged are skipped with a `StudyWarning`.
 
         Args:
-            tasks: Exact JSON of each.
+            tasks: Exact JSON of each task.
 
         Returns:
             Exact JSON of the results that are there, by task.

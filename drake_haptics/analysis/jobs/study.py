@@ -32,7 +32,7 @@ class TaskFailure:
     """A task that has no result.
 
     Attributes:
-        index: Its place among the tasks.
+        index: Index of the task.
         task: The task.
         reason: Type and message of the exception.
         traceback: Traceback in the process that computed it, for people.
@@ -53,8 +53,8 @@ class StudyError(RuntimeError):
 
     Attributes:
         results: The result of each task, in their order; None for a failed task.
-        failures: The tasks whose function raised, in their order. Tasks that nobody
-            came to, because the executor broke, are not among them.
+        failures: The tasks whose function raised, in their order. Tasks that were not
+            reached because the executor broke are not among them.
     """
 
     def __init__(
@@ -98,13 +98,13 @@ class Outcome:
 class StudyChunk:
     """A function and some tasks that travel to a worker together.
 
-    It is an object without a meaning to any executor: some look for their own futures
+    Executors see an object that they know nothing of: some look for their own futures
     in lists and strings that they are given as arguments.
 
     Args:
         function: The function to call for each task.
-        tasks: JSON of each by `to_exact_json`. Every executor so gives the function
-            the same new object, and never one that another task has changed.
+        tasks: JSON of each task by `to_exact_json`, so that every executor gives the
+            function the same new object, never one that another task has changed.
     """
 
     def __init__(self, function: Callable[[Any], Any], tasks: Sequence[str]):
@@ -126,7 +126,7 @@ class StudyChunk:
     def _compute(self, task: str) -> Outcome:
         try:
             return Outcome(self._to_json(self._function(from_exact_json(task))))
-        # Drake leaves by SystemExit where a condition of its own fails.
+        # Drake raises SystemExit where a condition of its own fails.
         except (Exception, SystemExit) as error:
             reason = f"{type(error).__name__}: {error}"
             return Outcome(None, reason, traceback.format_exc())
@@ -165,7 +165,7 @@ def run_study(
     thread, and each result goes through the same text. So the results do not depend on
     executor, number of workers, order, or on what a store already had: bit for bit on
     processors of one kind, if the function depends on nothing but its task. A task that
-    is there twice is computed once.
+    is given twice is computed once.
 
     Args:
         function: Function of one task. With a store it must be of the top level of a
@@ -189,7 +189,7 @@ def run_study(
 
     Raises:
         StudyError: Tasks raised, or workers died. It has the results of the others.
-        KeyboardInterrupt: A person pressed Ctrl-C; tells how many are done.
+        KeyboardInterrupt: Ctrl-C was pressed; the message says how many tasks are done.
         ValueError: An argument cannot be used, or the store is of another study.
         OSError: The store cannot be written.
     """
@@ -238,7 +238,7 @@ class _Study:
         self._results = store.load(self._distinct) if store is not None else {}
 
     def compute(self, executor: Executor | None, chunk_size: int) -> None:
-        """Computes what is not done, and keeps it."""
+        """Computes the tasks that are not done, and keeps their results."""
         self._report()
         pending = [key for key in self._distinct if key not in self._results]
         if not pending:
@@ -326,7 +326,7 @@ def _take(
         outcomes = future.result()
     except (BrokenExecutor, CancelledError):
         raise
-    except Exception as error:  # the chunk did not get there or not back
+    except Exception as error:  # the chunk was lost on its way there or back
         reason = f"{type(error).__name__}: {error}"
         outcomes = [Outcome(None, reason, traceback.format_exc())] * len(chunk)
     yield from zip(chunk, outcomes, strict=True)
@@ -337,7 +337,7 @@ def _open_executor(
 ) -> AbstractContextManager[Executor]:
     if executor is not None:
         return nullcontext(executor)
-    if is_in_task():  # the cores are at other tasks already
+    if is_in_task():  # the cores are busy with other tasks
         return nullcontext(SerialExecutor())
     return local_processes(chunks)
 

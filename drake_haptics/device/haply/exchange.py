@@ -25,7 +25,7 @@ from drake_haptics.device.gate import LocalGate
 from drake_haptics.device.rotation_vector import TurnRate
 
 ForceField = Literal["vector", "values"]
-"""What the service calls the force in a command: `values` before version 3.5."""
+"""Name that the service gives the force in a command: `values` before version 3.5."""
 
 # Asks for the list of devices, and moves nothing.
 ASK_FOR_DEVICES = json.dumps({"session": {"force_render_full_state": {}}})
@@ -65,13 +65,13 @@ class HaplyState:
 def parse_state(
     text: str | bytes, device_id: str | None = None, grip_id: str | None = None
 ) -> HaplyState | None:
-    """Reads what a message says of a device.
+    """Reads the state of a device from a message.
 
     Args:
         text: The message.
         device_id: Identifier of the Inverse3. Defaults to the first one listed.
-        grip_id: Of the VerseGrip; the first one listed where not given, the wireless
-            ones before those with a wire.
+        grip_id: Identifier of the VerseGrip; the first one listed where not given, the
+            wireless ones before those with a wire.
 
     Returns:
         The state; None if the message does not list the device.
@@ -215,7 +215,7 @@ class HaplyExchange:
         # The gate must be released before it can be enabled for the first time.
         self._releases = True
         self.reading: DeviceReading | None = None
-        """The newest one."""
+        """The newest reading."""
         self.has_grip = False
         """Tells whether a grip told its orientation in the newest message."""
         self.rejected = 0
@@ -242,7 +242,7 @@ class HaplyExchange:
 
         Args:
             text: Message of the service.
-            command: The newest one there is; each is obeyed once.
+            command: Newest command, if there is one; each is obeyed once.
             now_ns: The time, ns; never goes back.
         """
         try:
@@ -276,8 +276,8 @@ class HaplyExchange:
     def end(self) -> str:
         """Ends all force at once and returns the message that says so.
 
-        For a service that gives no turn any more, of which a later one must not go on
-        with the force of the last.
+        It is for a service that gives no further turn: a later one must not go on with
+        the force of the last.
         """
         self._gate.fail()
         return self._format(np.zeros(6))
@@ -288,14 +288,14 @@ class HaplyExchange:
             self.reading = make_silent(self.reading)
 
     def _answer_blindly(self, command: DeviceCommand | None, now_ns: int) -> str:
-        """Returns the answer to what told nothing of the device."""
+        """Returns the answer to a message that tells nothing of the device."""
         reading = self.reading
         if reading is None:
             return ASK_FOR_DEVICES
         is_silent = self._fail_after_silence(now_ns)
         if is_silent:
             self.fall_silent()
-            self._obeyed = command  # What is asked of nobody is never shown.
+            self._obeyed = command  # A command that no device heard is never shown.
         # For a while the handle is taken to be where it was: one message that is lost
         # must not be felt.
         F_Ho_B = self._pass(command, reading.X_BH, reading.V_BH, now_ns)

@@ -33,14 +33,14 @@ _RETRY_S = 0.1
 _CONNECT_S = 1.0
 # Ticks that the lateness covers: a second of them.
 _LATENESS_TICKS = 1000
-# What an address may say.
+# Options that an address may have.
 _OPTIONS: dict[str, Callable[[str], Any]] = {
     "device_id": str,
     "grip_id": str,
     "force_field": str,
     "max_force_N": float,
 }
-# Much more than a force takes to ramp out, and a connection to be given up.
+# Much longer than a force takes to ramp out, and a connection to be given up.
 _CLOSING_S = 3.0
 
 
@@ -83,9 +83,9 @@ class HaplyDevice(DeviceBackend):
             force_field: Name that the service gives the force: `values` before
                 version 3.5.
             max_force_N: Largest force ever shown, N.
-            ttl_s: How long a written wrench holds without a newer one, s.
+            ttl_s: Time for which a written wrench holds without a newer one, s.
             rate_hz: Exchanges per second, Hz, as far as the service keeps up.
-            timeout_s: How long to wait, s.
+            timeout_s: Time to wait for the first state, s.
 
         Raises:
             DeviceError: There is no service, or it has no such device.

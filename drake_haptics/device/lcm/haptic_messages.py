@@ -36,7 +36,7 @@ def member(lcm_type: str, length: int | None = None) -> Any:
     """Returns the dataclass field of a message's member, zero by default.
 
     Args:
-        lcm_type: Its type in the .lcm file.
+        lcm_type: Type of the member in the .lcm file.
         length: Length of an array; None for a single number.
     """
     zero = _ZEROS.get(lcm_type, 0)
@@ -51,7 +51,7 @@ class Layout:
     """The layout of a message's members in its bytes.
 
     Attributes:
-        members: Name and length of each.
+        members: Name and length of each member.
         packer: Packs the fingerprint and all numbers.
         fingerprint: Tells one type from another.
     """
@@ -84,10 +84,10 @@ class FixedMessage:
 
     @classmethod
     def decode(cls: type[_Message], data: bytes) -> _Message:
-        """Returns the message that bytes are of.
+        """Returns the message that is encoded in bytes.
 
         Raises:
-            ValueError: They are not of this type.
+            ValueError: The bytes are not of this type.
         """
         layout = cls.layout
         if len(data) != layout.packer.size:
@@ -158,10 +158,10 @@ class lcmt_haptic_status(FixedMessage):
         boot: Random for each start of the device, from 1 to 2³² − 1.
         sequence: Rises by one with each message.
         session: The run of a host that is served, 0 for none.
-        command_sequence: The newest command of it that was accepted, 0 for none.
+        command_sequence: Number of its newest command that was accepted, 0 for none.
         pose: (7,) X_BH as [qw qx qy qz x y z], unit quaternion, m.
         velocity: (6,) V_BH as [ω; v], rad/s and m/s.
-        wrench: (6,) what is shown at Ho, [τ; f], N·m and N.
+        wrench: (6,) wrench that is shown at Ho, [τ; f], N·m and N.
         max_force: The largest force that is ever shown, N.
         max_torque: The largest torque, N·m.
         buttons: Bit i is set while button i is held.
@@ -195,9 +195,9 @@ class lcmt_haptic_command(FixedMessage):
         utime: The host's monotonic clock, µs.
         session: Random for each run of a host, from 1 to 2³² − 1.
         sequence: Rises with each message.
-        time_to_live: How long this holds without a newer one, µs.
+        time_to_live: Time for which this holds without a newer one, µs.
         enable: Whether the device may show force.
-        wrench: (6,) on the handle at Ho in B, [τ; f], N·m and N.
+        wrench: (6,) wrench on the handle at Ho in B, [τ; f], N·m and N.
     """
 
     utime: int = member("int64_t")

@@ -34,11 +34,11 @@ _UNHEARD_S = 0.25
 STATUS_CHANNEL = "HAPTIC_STATUS"
 COMMAND_CHANNEL = "HAPTIC_COMMAND"
 
-# LCM itself answers what it cannot use by a line on stderr, and then does nothing.
+# LCM itself answers an unusable URL by a line on stderr, and then does nothing.
 _URL = r"(memq://|udpm://2(2[4-9]|3\d)(\.\d{1,3}){3}:\d{1,5}(\?\S+)?)?"
 _LONGEST_TTL_S = 10.0
 _SILENT_S = 0.25
-# Released so often, one release is enough to get through.
+# Number of releases at the end, so that one of them gets through.
 _CLOSING_RELEASES = 3
 
 
@@ -57,7 +57,7 @@ class HostHandshake:
     silent or serves this host no more, are left alone until somebody wants it back.
 
     Args:
-        session: This host's, as in its commands.
+        session: Session of this host, as in its commands.
     """
 
     def __init__(self, session: int) -> None:
@@ -78,7 +78,7 @@ class HostHandshake:
     def fall_silent(self) -> None:
         """Stops commanding a device that no longer sends.
 
-        What it would be asked for is computed from where its handle was.
+        Its commands would be computed from an old pose of the handle.
         """
         if self._phase is _Phase.ENABLES:
             self._phase = _Phase.AT_FAULT
@@ -92,7 +92,7 @@ class HostHandshake:
         """Reads the device's status.
 
         Args:
-            status: Newer than the last one.
+            status: Status, newer than the last one.
             now_s: The time, s.
         """
         if status.boot != self._boot:
@@ -163,11 +163,11 @@ class LcmDevice(DeviceBackend):
         """Subscribes.
 
         Args:
-            lcm: Where to; no `LcmInterfaceSystem` handles its subscriptions, as a
+            lcm: LCM to use; no `LcmInterfaceSystem` handles its subscriptions, as a
                 simulator of Drake 1.58 cannot call handlers of Python.
-            status_channel: Where the device sends.
-            command_channel: Where it listens.
-            ttl_s: How long a wrench holds without a newer one, s; the device may
+            status_channel: Channel on which the device sends.
+            command_channel: Channel at which it listens.
+            ttl_s: Time for which a wrench holds without a newer one, s; the device may
                 hold it for less.
             clock: Reads the time, s.
 
@@ -195,9 +195,9 @@ class LcmDevice(DeviceBackend):
         """Returns the device that is heard at a URL.
 
         Args:
-            url: As LCM has them: `udpm://239.255.76.67:7667?ttl=0`; empty for LCM's
+            url: URL of LCM, like `udpm://239.255.76.67:7667?ttl=0`; empty for LCM's
                 default.
-            **options: Those of the constructor.
+            **options: Arguments of the constructor.
 
         Raises:
             DeviceError: LCM has no such transport, or no way to the network.

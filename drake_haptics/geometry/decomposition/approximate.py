@@ -34,7 +34,7 @@ _HOW_TO_INSTALL = (
 
 
 def check_error(method: str, error_m: float | None) -> None:
-    """Checks that an error is given where, and only where, there is one.
+    """Checks that the method merged has an error, and no other method has one.
 
     Raises:
         HapticsError: It is missing, means nothing or is out of range.
@@ -60,8 +60,8 @@ def merge_patches(
 
     Args:
         mesh: The mesh.
-        piece_of_triangle: (m,) int32, of its surface decomposition.
-        error_m: How far a piece may depart from the mesh, m.
+        piece_of_triangle: (m,) int32 pieces of its surface decomposition.
+        error_m: Largest departure of a piece from the mesh, m.
         progress: Called with the share done, from 0 to 1.
     """
     start = time.perf_counter()
@@ -86,7 +86,7 @@ def coacd_parameters() -> dict[str, Any]:
     """Returns all that the result depends on besides the mesh.
 
     Raises:
-        HapticsError: if CoACD is not installed.
+        HapticsError: CoACD is not installed.
     """
     try:
         return {"coacd": version("coacd"), "concavity": CONCAVITY}
@@ -103,7 +103,7 @@ def coacd_hulls(mesh: Mesh, progress: Callable[[float], None]) -> list[np.ndarra
         The points (n_i, 3) of each piece, m.
 
     Raises:
-        HapticsError: if CoACD is not installed.
+        HapticsError: CoACD is not installed.
     """
     try:
         import coacd

@@ -1,8 +1,8 @@
 """Decompositions kept on disk, so that each mesh is cut only once.
 
-An entry's name is a hash of all that its content depends on, so entries never
-go stale. Nothing that is wrong with the cache stops a decomposition: what
-cannot be read is made again and replaced, what cannot be written is left out.
+An entry's name is a hash of all that its content depends on, so entries never go stale.
+Nothing that is wrong with the cache stops a decomposition: an entry that cannot be read
+is made again and replaced, one that cannot be written is left out.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ Progress = Callable[[float], None]
 # which it has remeshed.
 _ON_MESH = 5e-3
 
-# Of the time of merging, what finding the exact pieces takes, for the progress.
+# Share of finding the exact pieces in the time of merging, for the progress.
 _EXACT_SHARE = 0.2
 
 
@@ -56,10 +56,10 @@ class Decomposition:
     """A mesh and its convex pieces.
 
     Attributes:
-        mesh: the mesh.
-        core: the pieces as the core uses them.
-        method: by which they were found.
-        report: counts and time.
+        mesh: The mesh.
+        core: The pieces as the core uses them.
+        method: Method by which they were found.
+        report: Counts and time.
     """
 
     mesh: Mesh
@@ -87,18 +87,18 @@ class Decomposition:
         """Writes mesh and pieces to an .npz file, whole or not at all.
 
         Raises:
-            OSError: if the system refuses.
+            OSError: The system refuses.
         """
         write_decomposition(Path(path), self.mesh, self.method, self._data)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Decomposition:
-        """Reads what `save` wrote.
+        """Reads a file of `save`.
 
         Raises:
-            DecompositionFileError: if the file is damaged, foreign or of another
-                version of the format.
-            OSError: if it cannot be opened.
+            DecompositionFileError: The file is damaged, foreign or of another version
+                of the format.
+            OSError: It cannot be opened.
         """
         mesh, method, data = read_decomposition(Path(path))
         return _assemble(mesh, _checked_method(method), data, from_cache=True)
@@ -115,7 +115,7 @@ def decompose(
     """Cuts a mesh into convex pieces.
 
     Args:
-        mesh: from `load_mesh` or `Mesh.from_arrays`.
+        mesh: Mesh from `load_mesh` or `Mesh.from_arrays`.
         method: "surface" covers the mesh exactly: patches grown for as long as
             they are convex and their hulls stay inside the solid (Kim, Otaduy, Lin
             and Manocha 2003, section 5.3.1). A solid that differs from its hull
@@ -127,16 +127,16 @@ def decompose(
             convex hull for each component, felt all over: it fills hollows.
             "coacd" fills solids with few pieces approximately (optional extra);
             it fills cavities.
-        error_m: for "merged", and only there: how far a piece may depart from the
-            mesh, m.
-        progress: called now and then with the share done, from 0 to 1. An
-            exception that it raises stops the work and comes out here.
-        cache: use and keep results on disk, see
+        error_m: Largest departure of a piece from the mesh, m; for "merged", and only
+            there.
+        progress: Called now and then with the share done, from 0 to 1. An exception
+            that it raises stops the work and comes out here.
+        cache: Whether to use and keep results on disk, see
             `drake_haptics.geometry.decomposition.cache`.
 
     Raises:
-        HapticsError: if there is no mesh, the method is unknown, its error is missing
-            or its optional package is.
+        HapticsError: There is no mesh, the method is unknown, its error is missing or
+            its optional package is.
     """
     if not isinstance(mesh, Mesh):
         raise HapticsError(
@@ -200,7 +200,7 @@ def _find_pieces(mesh: Mesh, method: Method, progress: Progress) -> PieceData:
     else:
         hulls = coacd_hulls(mesh, progress)
     size_m = float(np.linalg.norm(mesh.report.extent))
-    # A hull is the solid itself: what it fills is felt, or a tool would fall through.
+    # A hull is the solid itself: its hollows are felt, or a tool would fall through.
     tolerance = math.inf if method == "hull" else _ON_MESH * size_m
     return ConvexHulls.of(hulls, tolerance, time.perf_counter() - start)
 

@@ -19,7 +19,7 @@ class PatchLabels:
 
     Attributes:
         piece_of_triangle: (m,) int32 in [0, number of pieces).
-        seconds: that the search took, s.
+        seconds: Time that the search took, s.
     """
 
     piece_of_triangle: np.ndarray
@@ -41,11 +41,12 @@ class MergedPatches:
     """Pieces that are hulls of several patches of the mesh's surface.
 
     Attributes:
-        piece_of_triangle: (m,) int32 of the patches.
-        group_of_piece: (k,) int32: patches of one group are one piece.
-        error_m: allowed departure from the mesh, m.
-        departure_m: bound on the largest departure that there is, m.
-        seconds: that the search took, s.
+        piece_of_triangle: (m,) int32 patch of each triangle.
+        group_of_piece: (k,) int32 group of each patch: patches of one group are one
+            piece.
+        error_m: Allowed departure from the mesh, m.
+        departure_m: Bound on the largest departure that there is, m.
+        seconds: Time that the search took, s.
     """
 
     piece_of_triangle: np.ndarray
@@ -84,14 +85,14 @@ def _are_labels(labels: np.ndarray, count: int) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class ConvexHulls:
-    """Pieces that were made elsewhere, as the points that they are the hulls of.
+    """Pieces that were made elsewhere, as points whose hulls they are.
 
     Attributes:
-        points: (p, 3) of all hulls, m.
+        points: (p, 3) points of all hulls, m.
         start: (k + 1,) int32: hull i has the points start[i] to start[i + 1].
-        tolerance: within which a hull's facet is on the mesh, m; infinite where the
-            hulls take the place of the mesh.
-        seconds: that making them took, s.
+        tolerance: Distance within which a hull's facet is on the mesh, m; infinite
+            where the hulls take the place of the mesh.
+        seconds: Time that making them took, s.
     """
 
     points: np.ndarray

@@ -13,7 +13,7 @@ from rich.text import Text
 from drake_haptics.common.one_line import count
 from drake_haptics.geometry.mesh.report import length
 
-# A mesh of so many pieces is mostly a scan, whose noise folds inward everywhere.
+# A mesh of more pieces is mostly a scan, whose noise folds inward everywhere.
 _MANY_PIECES = 2000
 
 
@@ -22,19 +22,20 @@ class DecompositionReport:
     """The outcome of a decomposition.
 
     Attributes:
-        source: file or name of the mesh.
+        source: File or name of the mesh.
         method: "surface", "merged", "hull" or "coacd".
-        triangles: of the mesh.
-        one_sided_triangles: those that bound no solid.
-        pieces: convex pieces.
-        flat_pieces: those of them without volume (coplanar patches, and needles
+        triangles: Number of triangles of the mesh.
+        one_sided_triangles: Number of those that bound no solid.
+        pieces: Number of convex pieces.
+        flat_pieces: Number of those without volume (coplanar patches, and needles
             thinner than the tolerance).
-        facets: of all pieces; a flat piece counts as one.
-        virtual_facets: those of them that are not on the mesh.
-        seconds: that finding the pieces took, s.
-        from_cache: the pieces were found earlier and read from the cache or a file.
-        departure_m: of merged pieces: a bound on how far any of them departs from the
-            mesh, m; None for other methods.
+        facets: Number of facets of all pieces; a flat piece counts as one.
+        virtual_facets: Number of those that are not on the mesh.
+        seconds: Time that finding the pieces took, s.
+        from_cache: Whether the pieces were found earlier and read from the cache or a
+            file.
+        departure_m: Bound on the departure of any merged piece from the mesh, m; None
+            for other methods.
     """
 
     source: str

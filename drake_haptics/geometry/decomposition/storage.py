@@ -37,8 +37,8 @@ def read_pieces(path: Path, key: str, mesh: Mesh) -> PieceData:
     """Reads an entry of the cache.
 
     Raises:
-        DecompositionFileError: if it is damaged or not the entry of that key.
-        OSError: if it cannot be opened.
+        DecompositionFileError: It is damaged or not the entry of that key.
+        OSError: It cannot be opened.
     """
     facts, arrays = read_archive(path)
     if facts.get("key") != key:
@@ -64,14 +64,14 @@ def write_decomposition(path: Path, mesh: Mesh, method: str, pieces: PieceData) 
 
 
 def read_decomposition(path: Path) -> tuple[Mesh, str, PieceData]:
-    """Reads what `write_decomposition` wrote.
+    """Reads a file of `write_decomposition`.
 
     Returns:
         The mesh, the method and the pieces.
 
     Raises:
-        DecompositionFileError: if the file is not such a one or is damaged.
-        OSError: if it cannot be opened.
+        DecompositionFileError: The file is not such a one or is damaged.
+        OSError: It cannot be opened.
     """
     facts, arrays = read_archive(path)
     if "mesh_report" not in facts:
@@ -159,7 +159,7 @@ def write_archive(
     process is killed or another one writes the same file.
 
     Raises:
-        OSError: if the system refuses.
+        OSError: The system refuses.
     """
     header = {"format": FORMAT_NAME, "version": FORMAT_VERSION, **facts}
     text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
@@ -184,12 +184,12 @@ def write_archive(
 
 
 def read_archive(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Reads what `write_archive` wrote; the arrays are read-only.
+    """Reads a file of `write_archive`; the arrays are read-only.
 
     Raises:
-        DecompositionFileError: if the file is damaged, foreign or of another
-            version of the format.
-        OSError: if the file cannot be opened.
+        DecompositionFileError: The file is damaged, foreign or of another version of
+            the format.
+        OSError: The file cannot be opened.
     """
     with open(path, "rb") as stream:
         data = stream.read()

@@ -30,12 +30,12 @@ _EXPLOSION = 0.5
 class DecompositionViewer:
     """Shows a decomposition on a web page.
 
-    On the left the pieces in place, colored, as they cover the mesh; on the
-    right the same pieces moved apart, with their virtual facets (those that are
-    not on the mesh) in translucent gray. The page's own controls hide each.
+    The pieces are on the left in place, colored, as they cover the mesh, and on the
+    right moved apart, with their virtual facets (those that are not on the mesh) in
+    translucent gray. The page's own controls hide each.
 
     Args:
-        decomposition: what to show.
+        decomposition: The decomposition to show.
     """
 
     def __init__(self, decomposition: Decomposition) -> None:

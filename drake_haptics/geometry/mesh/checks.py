@@ -1,6 +1,6 @@
 """Checks a mesh: its arrays before anything is computed, and its shape after repairs.
 
-Nothing is changed here: what is wrong is an error, what is doubtful a finding.
+Nothing is changed here: a mistake is an error, a doubt a finding.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from drake_haptics.geometry.mesh.units import guess_unit
 # A hand holds the tool: beyond these sizes the unit is more likely wrong than not.
 LARGEST_USUAL_EXTENT_M = 10.0
 SMALLEST_USUAL_EXTENT_M = 1e-3
-# What closes holes; trimesh does it where they are triangles or quadrilaterals.
+# Programs that close holes; trimesh does it for triangles or quadrilaterals.
 _HOLES = "MeshLab (Close Holes) or Blender (Fill Holes)"
 _SMALL_HOLES = (
     'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
@@ -136,10 +136,10 @@ def check_size(
     """Questions the unit when the size is unlike anything that a hand touches.
 
     Args:
-        extent: (3,) of the bounding box, m.
-        meters_per_unit: that was used.
-        ignored_unit: that the file states where the user stated none.
-        findings: appended to.
+        extent: (3,) sides of the bounding box, m.
+        meters_per_unit: Unit that was used, m.
+        ignored_unit: Unit that the file states where the user stated none.
+        findings: List that the finding is appended to.
     """
     if ignored_unit not in (None, "m"):
         findings.append(
@@ -178,8 +178,8 @@ def checked_arrays(
     """Returns (n, 3) float64 vertices in meters and (m, 3) int64 triangles.
 
     Raises:
-        MeshError: if either has a wrong shape or type, there is no triangle, a
-            coordinate is not finite or absurdly large, or an index is out of range.
+        MeshError: Either has a wrong shape or type, there is no triangle, a coordinate
+            is not finite or absurdly large, or an index is out of range.
     """
     V = _as_array(vertices, "vertices")
     F = _as_array(triangles, "triangles")
@@ -236,7 +236,7 @@ def question_tolerance(tolerance_m: float, tool: str, extent_m: float) -> list[s
         extent_m: Largest side of its box, m.
 
     Returns:
-        A sentence if it is; nothing if not.
+        A sentence if it is; otherwise nothing.
     """
     if tolerance_m <= extent_m:
         return []

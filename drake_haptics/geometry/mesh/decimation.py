@@ -1,10 +1,9 @@
 """Meshes with fewer triangles, and how far their surface then is from the true one.
 
 meshoptimizer collapses edges in the order of their quadric errors (Garland and
-Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997). The corners
-that remain are corners of the original, where they were. What a collapse can leave
-behind, folded and branching triangles, is cleaned up or makes the count one that does
-not work.
+Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997). The corners that
+remain are corners of the original, where they were. The folded and branching triangles
+that a collapse can leave behind are cleaned up, or the count does not work.
 """
 
 from __future__ import annotations
@@ -23,25 +22,25 @@ from drake_haptics.geometry.mesh.report import Finding, Severity, length
 # A count that leaves a clean surface is mostly found at once.
 _TRIES_BELOW = 12
 _GROWTH_ABOVE = 1.1
-# Of meshoptimizer: none, and SimplifyRegularize, which takes other ways.
+# Options of meshoptimizer: none, and SimplifyRegularize, which takes other ways.
 _OPTIONS = (0, 16)
 
 
 def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
     """Returns the mesh with at most so many triangles, as alike as they allow.
 
-    What is closed stays closed, and no solid is lost. The report of the
+    A closed part stays closed, and no solid is lost. The report of the
     result has the `decimation_error_m`, and the finding "decimated".
 
     Args:
-        mesh: From `load_mesh` or `Mesh.from_arrays`. It is returned as it is if it has
-            no more triangles.
-        max_triangles: 4 or more.
+        mesh: Mesh from `load_mesh` or `Mesh.from_arrays`. It is returned as it is if it
+            has no more triangles.
+        max_triangles: Largest number of triangles, 4 or more.
 
     Raises:
         ValueError: `max_triangles` is below 4.
-        MeshError: With so few triangles the mesh would not be what it is. The message
-            names the nearest count that works.
+        MeshError: So few triangles would tear or fold the mesh. The message names the
+            nearest count that works.
     """
     if max_triangles < 4:
         raise ValueError(f"max_triangles must be 4 or more, is {max_triangles}")
@@ -75,7 +74,7 @@ def _counts_above(least: int, end: int) -> Iterator[int]:
 
 
 def _first_sound(mesh: Mesh, counts: Iterator[int]) -> tuple[Mesh, int] | None:
-    """Returns what the first count that works gives, and that count.
+    """Returns the mesh of the first count that works, and that count.
 
     It may give fewer triangles, and the number of those need not be one that works.
     """
@@ -124,7 +123,7 @@ def _drop_folded(triangles: np.ndarray) -> np.ndarray:
 
 
 def _is_alike(mesh: Mesh, fewer: Mesh) -> bool:
-    """Tells whether a mesh still has all parts and no defect that is new."""
+    """Tells whether a mesh still has all parts and no new defect."""
     known = {finding.code for finding in mesh.report.unclean}
     is_open = bool(mesh.report.one_sided_triangles)
     return (

@@ -1,8 +1,8 @@
 """Loads a mesh from a file or arrays, and computes its mass properties.
 
-What is wrong beyond use is refused with a `MeshError`; every other defect is
-repaired or left as it is, and named in the mesh's report. Self-intersections
-are not looked for: the surface counts, not what encloses it.
+A mesh that cannot be used is refused with a `MeshError`; every other defect is repaired
+or left as it is, and named in the mesh's report. Self-intersections are not looked for:
+the surface counts, not what encloses it.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ class Component:
     """A connected part of a mesh.
 
     Attributes:
-        triangles: how many it has.
-        closed: every edge has a triangle on both sides, coherently wound.
-        orientable: it has two sides.
-        solid: it bounds a solid: closed, with volume, and wound outward (away
+        triangles: Number of its triangles.
+        closed: Whether every edge has a triangle on both sides, coherently wound.
+        orientable: Whether it has two sides.
+        solid: Whether it bounds a solid: closed, with volume, and wound outward (away
             from the material, so the wall of a cavity faces into the cavity).
-        cavity: it is the wall of a cavity in another component.
-        volume: m³, negative for a cavity; None unless closed.
-        area: m².
-        bounds: ((x, y, z) lowest, (x, y, z) highest), m.
+        cavity: Whether it is the wall of a cavity in another component.
+        volume: Volume, m³, negative for a cavity; None unless closed.
+        area: Area, m².
+        bounds: Corners of the box, ((x, y, z) lowest, (x, y, z) highest), m.
     """
 
     triangles: int
@@ -69,12 +69,12 @@ class Mesh:
     """A triangle mesh that passed the intake; all arrays are read-only.
 
     Attributes:
-        vertices: (n, 3) float64, m.
-        triangles: (m, 3) int32, counter-clockwise seen from outside.
-        component_of_triangle: (m,) int32.
+        vertices: (n, 3) float64 vertices, m.
+        triangles: (m, 3) int32 indices, counter-clockwise seen from outside.
+        component_of_triangle: (m,) int32 component of each triangle.
         solid: (m,) uint8, 1 where the triangle's component bounds a solid.
-        components: in order of their first triangles.
-        report: what was found and done.
+        components: Components in order of their first triangles.
+        report: Report on what was found and done.
     """
 
     vertices: NDArray[np.float64]
@@ -96,18 +96,18 @@ class Mesh:
     def from_arrays(
         vertices: Any, triangles: Any, *, name: str = "mesh", strict: bool = False
     ) -> Mesh:
-        """Makes a mesh of arrays.
+        """Makes a mesh from arrays.
 
         Args:
             vertices: (n, 3) real numbers, m.
             triangles: (m, 3) integers, indices of vertices.
-            name: for messages.
-            strict: refuse a mesh that has a defect, repairable or not.
+            name: Name for messages.
+            strict: Whether to refuse a mesh that has a defect, repairable or not.
 
         Raises:
-            MeshError: if the arrays have wrong shapes or types, hold NaN or Inf or
-                an index out of range, have no triangle with an area; or if
-                `strict` and there is a defect.
+            MeshError: The arrays have wrong shapes or types, hold NaN or Inf or an
+                index out of range, have no triangle with an area; or `strict` and there
+                is a defect.
         """
         findings: list[Finding] = []
         return _take_in(vertices, triangles, name, 1.0, findings, strict)
@@ -123,15 +123,15 @@ def load_mesh(
     """Reads a mesh file; the parts of a scene are merged where they are placed.
 
     Args:
-        path: any format that trimesh reads, or .npz with V (n, 3) and F (m, 3);
+        path: Any format that trimesh reads, or .npz with V (n, 3) and F (m, 3);
             `package://...` names a file of this package or of Drake.
-        unit: length unit of the file ("m", "mm", "cm", "in", ...).
-        scale: meters per unit of the file, instead of `unit`. Without either,
-            the file is in meters.
-        strict: refuse a mesh that has a defect, repairable or not.
+        unit: Length unit of the file ("m", "mm", "cm", "in", ...).
+        scale: Meters per unit of the file, instead of `unit`. Without either, the file
+            is in meters.
+        strict: Whether to refuse a mesh that has a defect, repairable or not.
 
     Raises:
-        MeshError: if the file cannot be read, or as `Mesh.from_arrays`.
+        MeshError: The file cannot be read, or see `Mesh.from_arrays`.
     """
     factor = meters_per_unit(unit, scale)
     raw = read_mesh_file(path)
@@ -274,8 +274,8 @@ def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
     """Returns the dynamics of a tool of a mesh's shape, for `AddHapticLoop`.
 
     Args:
-        mesh: Of one density, as `calc_mass_properties` takes it.
-        mass_kg: Its mass, kg.
+        mesh: Mesh of one density, as `calc_mass_properties` takes it.
+        mass_kg: Mass, kg.
 
     Raises:
         ValueError: The mass is not above 0, or the mesh cannot be turned.
@@ -291,7 +291,7 @@ def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.nda
 
     Args:
         mesh: The mesh, in a frame M.
-        mass_kg: Its mass, kg.
+        mass_kg: Mass, kg.
 
     Returns:
         p_MMcm (3,), m, and I_MMcm_M (3, 3), kg·m².

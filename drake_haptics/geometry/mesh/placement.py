@@ -12,7 +12,7 @@ from drake_haptics.geometry.mesh.report import Finding, Severity, length
 # The smaller of the two meshes is this many nodes wide, unless that makes too many.
 _NODES_ACROSS = 100
 _MAX_NODES = 1 << 20
-# Share of the diagonal: an origin that is farther beside the mesh is there by chance.
+# Share of the diagonal: an origin farther from the mesh is there by chance.
 _FAR_ORIGIN = 0.1
 
 
@@ -28,10 +28,10 @@ class TouchMap:
         """Constructs the map.
 
         Args:
-            tool: In its frame T, which keeps the world's orientation.
-            environment: In the world.
+            tool: Tool in its frame T, which keeps the world's orientation.
+            environment: Environment in the world.
             place: (2,) x and y of T's origin in the world, m.
-            reach: How far from there heights will be asked for, m.
+            reach: Distance from there up to which heights will be asked for, m.
         """
         widths = [max(mesh.report.extent[:2]) for mesh in (tool, environment)]
         low = tool.vertices[:, :2].min(axis=0)
@@ -78,8 +78,8 @@ def _rasterize(
     """Returns the largest z over each node of a grid; -inf where there is nothing.
 
     Args:
-        vertices: (n, 3).
-        triangles: (m, 3).
+        vertices: (n, 3) vertices.
+        triangles: (m, 3) vertex indices.
         low: (2,) x and y of the first node.
         spacing: Spacing of the nodes, in x and y.
         shape: (2,) number of nodes in x and y.
@@ -111,8 +111,8 @@ def _raise_to_triangle(
 
     Args:
         heights: The grid.
-        corners: (3, 2) in units of the grid.
-        z: (3,) of the corners.
+        corners: (3, 2) corners in units of the grid.
+        z: (3,) heights of the corners.
         first: (2,) lowest node of the triangle's box.
         last: (2,) highest node.
     """
@@ -136,7 +136,7 @@ def center(mesh: Mesh) -> Mesh:
     Its report has the finding "centered", which tells by how much it moved.
 
     Args:
-        mesh: From `load_mesh` or `Mesh.from_arrays`.
+        mesh: Mesh from `load_mesh` or `Mesh.from_arrays`.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     middle = (low + high) / 2.0
@@ -161,9 +161,9 @@ def center(mesh: Mesh) -> Mesh:
 
 
 def find_origin_beside(mesh: Mesh) -> float | None:
-    """Returns how far beside the mesh's box the origin is, m.
+    """Returns the distance of the origin from the mesh's box, m.
 
-    None where it is in the box or near it, as that of a tool that is held at its end.
+    None where it is in the box or near it, as for a tool that is held at its end.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     beside_m = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
@@ -172,10 +172,10 @@ def find_origin_beside(mesh: Mesh) -> float | None:
 
 
 def describe_origin_beside(name: str, beside_m: float) -> str:
-    """Returns in words that a mesh has its origin far beside it.
+    """Returns the words that a mesh has its origin far beside it.
 
     Args:
         name: Name of its file.
-        beside_m: As `find_origin_beside` returns it, m.
+        beside_m: Distance that `find_origin_beside` returned, m.
     """
     return f"the origin of {name} is {length(beside_m)} beside the mesh"

@@ -22,7 +22,7 @@ from drake_haptics.geometry.mesh.units import unit_of_name
 # Bytes of a binary STL: 80 of anything and the number of triangles; each triangle.
 _STL_HEADER = 84
 _STL_TRIANGLE = 50
-# So much of the beginning tells whether a file is text.
+# Length of the beginning that tells whether a file is text.
 _TEXT = 1000
 
 
@@ -33,8 +33,8 @@ class RawMesh:
     Attributes:
         vertices: (n, 3) positions in the file's unit.
         triangles: (m, 3) vertex indices.
-        parts: how many placed geometries were merged.
-        unit: the unit that the file itself states, None if it states none.
+        parts: Number of placed geometries that were merged.
+        unit: Unit that the file itself states, None if it states none.
     """
 
     vertices: np.ndarray
@@ -47,12 +47,12 @@ def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
     """Reads every triangle of a file, scenes with their transforms applied.
 
     Args:
-        path: any format that trimesh reads (obj, stl, ply, off, glb, gltf, ...),
-            or .npz with arrays V (n, 3) and F (m, 3); `package://...` names one of
-            this package or of Drake.
+        path: Any format that trimesh reads (obj, stl, ply, off, glb, gltf, ...), or
+            .npz with arrays V (n, 3) and F (m, 3); `package://...` names one of this
+            package or of Drake.
 
     Raises:
-        MeshError: if the file is absent, unreadable or has no triangles.
+        MeshError: The file is absent, unreadable or has no triangles.
     """
     path = Path(resolve_package_url(path))
     if not path.exists():
@@ -125,7 +125,7 @@ def _silent_trimesh() -> Iterator[None]:
 def _describe_missing_triangles(path: Path) -> str:
     """Returns why trimesh finds no triangle in a file.
 
-    It takes what is no whole STL for one without facets.
+    It takes a file that is not a whole STL for one without facets.
     """
     if path.suffix.lower() != ".stl":
         return "has no triangles; point clouds and curves have no surface"

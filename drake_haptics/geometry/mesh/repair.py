@@ -14,7 +14,7 @@ from drake_haptics.geometry.mesh.topology import (
     triangle_area_vectors,
 )
 
-# Rounds of edge turning before what is left is cut out. Each round turns every
+# Rounds of edge turning before remaining slivers are cut out. Each round turns every
 # sliver that has a proper neighbor, so chains of slivers shrink from their ends.
 _MAX_ROUNDS = 32
 
@@ -43,9 +43,9 @@ def join_open_parts(
     would make one branching surface of two bodies.
 
     Args:
-        triangles: (m, 3) as written.
-        twin: (n,) from `equal_vertices`.
-        findings: appended to.
+        triangles: (m, 3) triangles as written.
+        twin: (n,) twins from `equal_vertices`.
+        findings: List that the findings are appended to.
     """
     edges = find_edges(triangles)
     label = connected_labels(len(triangles), edges.pairs)
@@ -109,8 +109,8 @@ def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray
     their union and goes: there, each edge of the wall's rim has two more faces.
 
     Args:
-        triangles: (m, 3) with equal vertices joined.
-        findings: appended to.
+        triangles: (m, 3) triangles with equal vertices joined.
+        findings: List that the findings are appended to.
 
     Returns:
         Ascending indices of the triangles to keep.
@@ -215,7 +215,7 @@ def remove_zero_area_faces(
     into (x, b, d) and (b, y, d). The surface stays the same set of points.
 
     Raises:
-        MeshError: if no triangle has an area.
+        MeshError: No triangle has an area.
     """
     before = len(triangles)
     repeated = (triangles == triangles[:, [1, 2, 0]]).any(axis=1)

@@ -17,10 +17,10 @@ from drake_haptics.common.one_line import count
 class Severity(str, Enum):
     """The severity of a finding.
 
-    NOTE: says something about the file; its surface is unchanged.
-    QUESTION: possibly a mistake that only its author can judge.
-    REPAIRED: a defect of the surface, repaired.
-    DEFECT: a defect of the surface, left as it is.
+    NOTE: Statement about the file; its surface is unchanged.
+    QUESTION: Possible mistake that only its author can judge.
+    REPAIRED: Defect of the surface, repaired.
+    DEFECT: Defect of the surface, left as it is.
     """
 
     NOTE = "note"
@@ -48,11 +48,11 @@ class Finding:
     """One thing found in a mesh.
 
     Attributes:
-        code: stable name, such as "duplicate-faces".
-        severity: how much it matters.
-        count: how many of them.
-        message: what was found.
-        action: what was done about it.
+        code: Stable name, such as "duplicate-faces".
+        severity: Severity of the finding.
+        count: Number of them.
+        message: Description of the finding.
+        action: Description of what was done about it.
     """
 
     code: str
@@ -73,7 +73,7 @@ class Finding:
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Finding:
-        """Reads what `to_dict` returned."""
+        """Reads the data of `to_dict`."""
         return Finding(**{**data, "severity": Severity(data["severity"])})
 
 
@@ -82,19 +82,19 @@ class MeshReport:
     """Size and kind of a mesh, and every finding of its intake.
 
     Attributes:
-        source: file or name of the mesh.
-        meters_per_unit: factor from the file's unit to meters.
-        vertices: count after intake.
-        triangles: count after intake.
-        components: count of connected parts.
-        solids: how many of them bound a solid.
-        one_sided_triangles: triangles of parts that bound no solid.
-        extent: (x, y, z) size of the bounding box, m.
-        area: of the surface, m².
-        volume: of the solids, m³, counted once for each; cavities subtract.
-        findings: in the order in which they were made.
-        decimation_error_m: largest distance between this surface and that of the
-            file, m; 0 where no triangles were taken away.
+        source: File or name of the mesh.
+        meters_per_unit: Factor from the file's unit to meters.
+        vertices: Number of vertices after intake.
+        triangles: Number of triangles after intake.
+        components: Number of connected parts.
+        solids: Number of those that bound a solid.
+        one_sided_triangles: Number of triangles of parts that bound no solid.
+        extent: Size (x, y, z) of the bounding box, m.
+        area: Area of the surface, m².
+        volume: Volume of the solids, m³, counted once for each; cavities subtract.
+        findings: Findings in the order in which they were made.
+        decimation_error_m: Largest distance between this surface and that of the file,
+            m; 0 where no triangles were taken away.
     """
 
     source: str
@@ -164,7 +164,7 @@ class MeshReport:
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> MeshReport:
-        """Reads what `to_dict` returned."""
+        """Reads the data of `to_dict`."""
         x, y, z = data["extent_m"]
         return MeshReport(
             source=data["source"],
@@ -239,11 +239,11 @@ def _power(value: float, exponent: int) -> str:
     """Writes an area or a volume in the unit that people would use for it.
 
     Args:
-        value: In m² or m³.
-        exponent: 2 or 3.
+        value: Area or volume, m² or m³.
+        exponent: Exponent of the unit, 2 or 3.
     """
     mark = {2: "²", 3: "³"}[exponent]
-    # From a liter on, 1000 cm³ are better said as 0.001 m³.
+    # From a liter on, 0.001 m³ reads better than 1000 cm³.
     for least_m, unit, per_m in ((0.1, "m", 1), (0.01, "cm", 100)):
         if value >= least_m**exponent or value == 0:
             return f"{value * per_m**exponent:.4g} {unit}{mark}"

@@ -2,7 +2,7 @@
 
 The error is shared by both sides: corners are outside of the true surface and the
 middles of facets inside of it by at most the chord error, so that with as few corners
-the shape is neither too large nor too small. What is flat is exact.
+the shape is neither too large nor too small. Flat faces are exact.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from drake_haptics.common.value_checks import check_positive
 
-# Beyond, a hull takes seconds and says no more to a hand.
+# With more corners a hull takes seconds and says no more to a hand.
 _LARGEST_FREQUENCY = 40
 _MOST_SIDES = 720
 
@@ -61,15 +61,15 @@ def make_capsule_corners(
 ) -> np.ndarray:
     """Returns corners (n, 3) of a capsule along z about the origin.
 
-    The hull of a ball at either end of the segment; it inherits the ball's error.
+    It is the hull of a ball at either end of the segment, with the ball's error.
 
     Args:
-        radius_m: Of the ball, m.
-        length_m: Of the segment, m.
-        chord_error_m: As for `make_ellipsoid_corners`.
+        radius_m: Radius of the ball, m.
+        length_m: Length of the segment, m.
+        chord_error_m: Chord error as for `make_ellipsoid_corners`.
 
     Raises:
-        ValueError: As `make_ellipsoid_corners`.
+        ValueError: See `make_ellipsoid_corners`.
     """
     ball = make_ellipsoid_corners((radius_m, radius_m, radius_m), chord_error_m)
     up = np.array([0.0, 0.0, 0.5 * length_m])
@@ -85,7 +85,7 @@ def make_cylinder_corners(
 
     Args:
         radius_m: Radius, m.
-        length_m: From end to end, m.
+        length_m: Length from end to end, m.
         chord_error_m: Largest distance of the sides from the round surface, m.
 
     Raises:
@@ -111,7 +111,7 @@ def make_cylinder_corners(
 
 
 def _split_error(height: float) -> tuple[float, float]:
-    """Returns the scale that puts the error of a unit shape on both sides, and it.
+    """Returns a scale that puts a unit shape's error on both sides, and the error.
 
     Args:
         height: Least distance of a facet's plane from the middle, corners being at 1.
@@ -120,7 +120,7 @@ def _split_error(height: float) -> tuple[float, float]:
 
 
 def _geodesic(frequency: int) -> tuple[np.ndarray, float]:
-    """Returns (10 f² + 2, 3) even unit vectors and how near their facets come to 0.
+    """Returns (10 f² + 2, 3) even unit vectors and the least distance of facets from 0.
 
     Each side of an icosahedron is divided into f parts, each face into f² triangles.
     """

@@ -60,7 +60,7 @@ def connected_labels(num_nodes: int, links: IntArray) -> IntArray:
     """Labels the connected components of a graph.
 
     Args:
-        num_nodes: nodes are 0 ... num_nodes - 1.
+        num_nodes: Number of nodes, which are 0 ... num_nodes - 1.
         links: (k, 2) pairs of nodes.
 
     Returns:
@@ -90,14 +90,14 @@ def orientation_flips(
 ) -> tuple[IntArray, np.ndarray, np.ndarray]:
     """Finds components across two-sided edges, and how to wind each coherently.
 
-    Works on the double cover: two nodes for each triangle, as wound and turned
-    over. A component is orientable exactly when the two stay unconnected; of one that
-    is not, nothing is turned over.
+    It works on the double cover: two nodes for each triangle, as wound and turned over.
+    A component is orientable exactly when the two stay unconnected; of one that is not,
+    nothing is turned over.
 
     Returns:
         component: (m,) component of each triangle, 0 ... k - 1.
         flip: (m,) whether to turn it over, as its component's first triangle is wound.
-        orientable: (k,) per component.
+        orientable: (k,) whether each component is orientable.
     """
     component, k = number_labels(connected_labels(num_triangles, edges.pairs))
     a, b = edges.pairs[:, 0], edges.pairs[:, 1]
@@ -126,16 +126,16 @@ def triangle_area_vectors(vertices: FloatArray, triangles: IntArray) -> FloatArr
 def winding_numbers(
     points: FloatArray, vertices: FloatArray, triangles: IntArray
 ) -> FloatArray:
-    """Winding number of a triangle surface around points.
+    """Returns the winding number of a triangle surface around points.
 
-    The sum of signed solid angles over 4 pi (Van Oosterom and Strackee, "The
-    solid angle of a plane triangle", 1983): 1 inside a closed surface that is
-    wound outward, 0 outside.
+    It is the sum of signed solid angles over 4 pi (Van Oosterom and Strackee, "The
+    solid angle of a plane triangle", 1983): 1 inside a closed surface that is wound
+    outward, 0 outside.
 
     Args:
-        points: (q, 3).
-        vertices: (n, 3).
-        triangles: (m, 3).
+        points: (q, 3) points.
+        vertices: (n, 3) vertices.
+        triangles: (m, 3) vertex indices.
 
     Returns:
         (q,) winding numbers.

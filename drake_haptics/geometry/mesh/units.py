@@ -17,7 +17,7 @@ METERS_PER_UNIT: dict[str, float] = {
     "ft": 0.3048,
 }
 
-# Of files whose unit is not the one stated.
+# Units to guess for files whose unit is not the one stated.
 _LIKELY_UNITS = ("mm", "cm", "in", "m", "km")
 _OF_A_HAND_M = (0.02, 1.0)
 
@@ -46,15 +46,15 @@ def meters_per_unit(unit: str | None, scale: float | None) -> float:
     """Returns the factor that turns a file's coordinates into meters.
 
     Args:
-        unit: name of a length unit, such as "mm"; None if not stated.
-        scale: meters per unit of the file; None if not stated.
+        unit: Name of a length unit, such as "mm"; None if not stated.
+        scale: Meters per unit of the file; None if not stated.
 
     Returns:
         The factor; 1.0 (meters) if neither is stated.
 
     Raises:
-        MeshError: if both are given, the unit is unknown, or the scale is not
-            a positive finite number.
+        MeshError: Both are given, the unit is unknown, or the scale is not a positive
+            finite number.
     """
     if unit is not None and scale is not None:
         raise MeshError(
@@ -80,9 +80,9 @@ def guess_unit(extent: float, smallest_m: float, largest_m: float) -> str | None
     """Returns the unit in which a size would be a usual one, the likeliest first.
 
     Args:
-        extent: In the file's unit, whatever that is.
-        smallest_m: Of usual sizes, m.
-        largest_m: Of usual sizes, m.
+        extent: Size in the file's unit, whatever that is.
+        smallest_m: Smallest usual size, m.
+        largest_m: Largest usual size, m.
     """
     for low_m, high_m in (_OF_A_HAND_M, (smallest_m, largest_m)):
         for unit in _LIKELY_UNITS:

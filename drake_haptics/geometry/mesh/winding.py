@@ -21,17 +21,18 @@ _NESTING_SAMPLES = 12
 
 @dataclass(frozen=True)
 class Winding:
-    """A coherently wound mesh and what its components are.
+    """A coherently wound mesh and the kinds of its components.
 
     Attributes:
-        triangles: (m, 3) with windings repaired.
+        triangles: (m, 3) triangles with windings repaired.
         component: (m,) component of each triangle, in order of first triangle.
         orientable: (k,) whether the component has two sides.
         closed: (k,) whether every edge of the component is balanced: as many
             triangles run along it one way as the other, and at least two.
         cavity: (k,) whether the component is the wall of a hollow in another.
-        volume: (k,) m³; signed, negative for cavities, meaningless unless closed.
-        area: (k,) m².
+        volume: (k,) volumes, m³; signed, negative for cavities, meaningless unless
+            closed.
+        area: (k,) areas, m².
     """
 
     triangles: np.ndarray

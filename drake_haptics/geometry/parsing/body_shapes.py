@@ -75,10 +75,10 @@ def decompose_body(
     piece each. Where shapes of a body overlap, each keeps its own surface.
 
     Args:
-        plant: Registered with a scene graph.
-        inspector: Of that scene graph's model.
+        plant: Plant that is registered with a scene graph.
+        inspector: Inspector of that scene graph's model.
         body: Body of the plant.
-        role: Which of its shapes: those for proximity or for illustration.
+        role: Role of the shapes that count: proximity or illustration.
         chord_error_m: Largest distance of a polytope from the round shape that it
             stands for, m.
         progress: Called while meshes are cut with the share done, from 0 to 1.
@@ -217,7 +217,7 @@ def read_mesh_source(source: MeshSource, scale3: np.ndarray) -> RawMesh:
     """Reads a mesh as Drake places it in the frame of its geometry.
 
     Args:
-        source: Names a file, or holds it.
+        source: Source that names a file, or holds it.
         scale3: (3,) meters per unit of the file, along each axis.
 
     Returns:

@@ -37,8 +37,8 @@ def load_model_mesh(
 ) -> Mesh:
     """Reads the collision shapes of a model as one mesh.
 
-    Joints stay at their default positions. Round shapes become polytopes, as
-    `drake_haptics.geometry.parsing.body_shapes` says.
+    Joints stay at their default positions. Round shapes become polytopes, see
+    `drake_haptics.geometry.parsing.body_shapes`.
 
     Args:
         path: SDF, URDF or MJCF, or model directives (.dmd.yaml); as a whole rigid.
