@@ -1,5 +1,5 @@
 """
-The compiled core of drake_haptics: geometry, contact query, clustering and wrenches. What of it is for programs of your own has its name in drake_haptics; the rest is the engine behind it.
+The compiled core of drake_haptics: geometry, contact query, clustering and wrenches. The parts for your own programs have names in drake_haptics; the rest is the engine behind them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,8 +22,8 @@ class AutoDiffVector:
     def __init__(self, value: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], gradient: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='F')]) -> None:
         """
         Args:
-            value: (n,).
-            gradient: (n, D).
+            value: (n,) values.
+            gradient: (n, D) derivatives.
 
         Raises:
             ValueError: the sizes do not match.
@@ -49,7 +49,7 @@ class ConvexPolytope:
         Builds the hull of (n, 3) points, m. Coplanar triangles become one facet; points that are not extreme are dropped; sets that are flat, straight or a single point are valid.
 
         Raises:
-            ValueError: no points, not finite, or 1e50 m and beyond.
+            ValueError: there are no points, or one is not finite, or 1e50 m and beyond.
         """
 
     @property
@@ -120,7 +120,7 @@ class ConvexPieces:
 
     @property
     def vertices(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
-        """(n, 3) of the mesh, m, in the object's frame."""
+        """(n, 3) vertices of the mesh, m, in the object's frame."""
 
     @property
     def triangles(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C')]:
@@ -140,13 +140,13 @@ class ConvexPieces:
 
 def decompose_surface(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], progress: Callable[[float], bool] | None = None) -> ConvexPieces:
     """
-    Convex surface decomposition (paper, section 5.3.1). A solid that differs from its hull by noise alone is one piece; pieces leave the solid by no more than 1e-6 of the mesh's size.
+    Convex surface decomposition (paper, section 5.3.1). A solid that differs from its hull by noise alone is one piece; pieces extend beyond the solid by no more than 1e-6 of the mesh's size.
 
     Args:
         vertices: (n, 3) positions, m.
         triangles: (m, 3) vertex indices, int32, counter-clockwise seen from outside.
-        solid: (m,) uint8, whether a triangle bounds a solid; the pieces of others are flat.
-        progress: called with the share done in [0, 1]; returns whether to go on.
+        solid: (m,) uint8, whether a triangle bounds a solid; pieces of other triangles are flat.
+        progress: function of the share done, in [0, 1], that returns whether to go on.
 
     Raises:
         ValueError: bad indices or values.
@@ -160,7 +160,7 @@ def assemble_surface_pieces(vertices: Annotated[NDArray[numpy.float64], dict(sha
     Args:
         vertices: (n, 3) positions, m.
         triangles: (m, 3) vertex indices, int32.
-        piece_of_triangle: (m,) int32, numbers from 0 without gaps.
+        piece_of_triangle: (m,) int32, piece of each triangle, from 0 without gaps.
 
     Raises:
         ValueError: bad indices, values or labels.
@@ -168,20 +168,20 @@ def assemble_surface_pieces(vertices: Annotated[NDArray[numpy.float64], dict(sha
 
 def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], pieces: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)]], tolerance: float) -> ConvexPieces:
     """
-    Pieces made elsewhere. Facets on the mesh are original, all others virtual.
+    Decomposition into pieces that were made elsewhere. Facets on the mesh are original, all others virtual.
 
     Args:
         vertices: (n, 3) positions, m.
         triangles: (m, 3) vertex indices, int32.
         pieces: list of (k, 3) points, m, whose hulls are the pieces.
-        tolerance: distance from the mesh, m, up to which a facet lies on it; infinite where the pieces take its place, all facets original.
+        tolerance: distance from the mesh, m, up to which a facet lies on it; infinite if the pieces take its place, so that all facets are original.
 
     Raises:
         ValueError: bad indices or values.
     """
 
 class MergedPieces:
-    """Which pieces of a decomposition become one."""
+    """Groups of a decomposition's pieces, each of which becomes one piece."""
 
     @property
     def group_of_piece(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]:
@@ -199,9 +199,9 @@ def merge_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3
         vertices: (n, 3) positions, m.
         triangles: (m, 3) vertex indices, int32.
         solid: (m,) uint8, whether a triangle bounds a solid.
-        piece_of_triangle: (m,) int32 of the exact decomposition.
-        error: m, zero or more.
-        progress: called with the share done in [0, 1]; returns whether to go on.
+        piece_of_triangle: (m,) int32, pieces of the exact decomposition.
+        error: largest departure, m, zero or more.
+        progress: function of the share done, in [0, 1], that returns whether to go on.
 
     Raises:
         ValueError: bad indices or values.
@@ -210,11 +210,11 @@ def merge_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3
 
 def assemble_merged_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], group_of_piece: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], error: float) -> ConvexPieces:
     """
-    The pieces of groups that merge_pieces found.
+    Decomposition with the groups that merge_pieces found.
 
     Args:
-        vertices, triangles, solid, piece_of_triangle, error: as for merge_pieces.
-        group_of_piece: (k,) int32 that it returned.
+        vertices, triangles, solid, piece_of_triangle, error: arguments of merge_pieces.
+        group_of_piece: (k,) int32, groups that merge_pieces returned.
 
     Raises:
         ValueError: bad indices, values or labels.
@@ -222,7 +222,7 @@ def assemble_merged_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shap
 
 def surface_distance(vertices_A: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles_A: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], vertices_B: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles_B: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> float:
     """
-    Largest distance, m, of any point of either surface from the other: a bound on it that is above by no more than 5%, or 1e-4 of the size.
+    Upper bound on the distance, m, of any point of either surface from the other. It exceeds the largest distance by no more than 5%, or 1e-4 of the size.
 
     Args:
         vertices_A, vertices_B: (n, 3) positions, m.
@@ -234,7 +234,7 @@ def surface_distance(vertices_A: Annotated[NDArray[numpy.float64], dict(shape=(N
 
 class FeatureKind(enum.IntEnum):
     """
-    What a feature of a `ConvexPolytope` is: the list that its index counts in.
+    Kind of a feature of a `ConvexPolytope`: the list that its index counts in.
     """
 
     VERTEX = 0
@@ -259,7 +259,7 @@ class Feature:
 
     @property
     def kind(self) -> FeatureKind:
-        """Which list the index counts in."""
+        """List that the index counts in."""
 
     @property
     def index(self) -> int:
@@ -272,7 +272,7 @@ class Feature:
     def __repr__(self) -> str: ...
 
 class ContactStatus(enum.IntEnum):
-    """How the answer of a pair of polytopes was reached."""
+    """How the contact of a pair of polytopes was found."""
 
     NEAR = 0
     """apart; closest features"""
@@ -284,7 +284,7 @@ class ContactStatus(enum.IntEnum):
     """passed behind the surface that it had pressed on; trackers only"""
 
     BOUNDED = 3
-    """a search met its bound; best answer seen"""
+    """a search reached its bound; best answer found"""
 
 class Contact:
     """
@@ -335,15 +335,15 @@ class Contact:
 
     @property
     def object_index(self) -> int:
-        """Which object B is; 0 from a pair."""
+        """Index of the object B; 0 from a pair."""
 
     @property
     def piece_A(self) -> int:
-        """Which piece of the tool A is; 0 from a pair."""
+        """Index of the tool's piece A; 0 from a pair."""
 
     @property
     def piece_B(self) -> int:
-        """Which piece of the object B is; 0 from a pair."""
+        """Index of the object's piece B; 0 from a pair."""
 
     def __repr__(self) -> str: ...
 
@@ -364,7 +364,7 @@ class ContactSet:
 
     @property
     def least_distance(self) -> float:
-        """Of the nearest contact, m; infinite if there is none."""
+        """Smallest distance of the contacts, m; infinite without any."""
 
     def __repr__(self) -> str: ...
 
@@ -397,7 +397,7 @@ class ContactSet:
     @property
     def extent(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """
-        (n,) measure of the overlap, m²: the area of flush faces under the pressure of a thin layer, of a flush edge its length times the layer, the layer squared at a point. Parts of a face that is cut add up.
+        (n,) measure of the overlap, m²: for flush faces their area under the pressure of a thin layer, for a flush edge its length times the layer, at a point the layer squared. Parts of a divided face add up.
         """
 
     @property
@@ -422,11 +422,11 @@ class ContactSet:
 
     @property
     def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) int32, which of the objects B is."""
+        """(n,) int32, index of the object B."""
 
     @property
     def piece_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) int32, piece of A (the tool), whose feature it is."""
+        """(n,) int32, piece of A (the tool) that `feature_A` belongs to."""
 
     @property
     def piece_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
@@ -474,7 +474,7 @@ class PairTrajectory:
     @property
     def extent(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """
-        (n,) measure of the overlap, m²: the area of flush faces under the pressure of a thin layer, of a flush edge its length times the layer, the layer squared at a point. Parts of a face that is cut add up.
+        (n,) measure of the overlap, m²: for flush faces their area under the pressure of a thin layer, for a flush edge its length times the layer, at a point the layer squared. Parts of a divided face add up.
         """
 
     @property
@@ -500,7 +500,7 @@ class PairTrajectory:
     @property
     def seconds(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """
-        (n,) time that each query took inside the core, s, by a steady clock whose own reading (some 0.03 µs) is in it.
+        (n,) time that each query took inside the core, s, including the reading of the clock (some 0.03 µs).
         """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
@@ -509,9 +509,9 @@ class PairTrajectory:
 
 class ConvexPair:
     """
-    Signed distance of two convex polytopes A and B, each query starting from the last one's answer. Apart it is the distance of the closest features. In overlap it is minus the penetration depth: `tracked` walks from the last answer to the locally least way out (paper, 5.2), and so does not pop through a thin plate; `global` is the least way out of all, exact and proven.
+    Signed distance of two convex polytopes A and B, each query starting from the last one's answer. Apart it is the distance of the closest features. In overlap it is minus the penetration depth: `tracked` walks from the last answer to a local minimum of the depth (paper, 5.2), and so does not pop through a thin plate; `global` is the global minimum, exact and proven.
 
-    A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a pair take turns.
+    A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves the pair as it was. Threads that share a pair take turns.
     """
 
     def __init__(self, A: ConvexPolytope, B: ConvexPolytope, depth: Literal['tracked', 'global'] = 'tracked') -> None:
@@ -542,14 +542,14 @@ class ConvexPair:
 
     def query_trajectory(self, X_WA: drake_haptics.common.pose_like.PoseLike, X_WB: drake_haptics.common.pose_like.PoseLike) -> PairTrajectory:
         """
-        What n single queries would give, in one call without the GIL.
+        Contacts of n queries in turn, in one call without the GIL.
 
         Args:
             X_WA: (n, 4, 4) or (n, 7) poses of A in turn, or one pose if A rests.
-            X_WB: the same of B.
+            X_WB: poses of B, likewise.
 
         Raises:
-            ValueError: a pose is not finite or not rigid, or numbers of poses differ; nothing was asked then.
+            ValueError: a pose is not finite or not rigid, or numbers of poses differ; then no query is made.
         """
 
     def reset(self) -> None:
@@ -600,7 +600,7 @@ class ContactTrajectory:
     @property
     def extent(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """
-        (n,) measure of the overlap, m²: the area of flush faces under the pressure of a thin layer, of a flush edge its length times the layer, the layer squared at a point. Parts of a face that is cut add up.
+        (n,) measure of the overlap, m²: for flush faces their area under the pressure of a thin layer, for a flush edge its length times the layer, at a point the layer squared. Parts of a divided face add up.
         """
 
     @property
@@ -625,11 +625,11 @@ class ContactTrajectory:
 
     @property
     def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) int32, which of the objects B is."""
+        """(n,) int32, index of the object B."""
 
     @property
     def piece_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) int32, piece of A (the tool), whose feature it is."""
+        """(n,) int32, piece of A (the tool) that `feature_A` belongs to."""
 
     @property
     def piece_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
@@ -651,17 +651,17 @@ class ContactTrajectory:
 
 class ContactTracker:
     """
-    All contacts of two decomposed bodies A and B, each query starting from the last one's answer (paper, sections 3 and 5.3): one for each pair of convex pieces nearer than the tolerance. Seams between pieces are not felt, and what has been pressed in stays in contact, out the way it came.
+    All contacts of two decomposed bodies A and B, each query starting from the last one's answer (paper, sections 3 and 5.3): one for each pair of convex pieces nearer than the tolerance. Seams between pieces are not felt, and a piece that was pressed in stays in contact until it comes out the way it went in.
 
-    A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a tracker take turns.
+    A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves the tracker as it was. Threads that share a tracker take turns.
     """
 
     def __init__(self, A: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, B: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
-        Watches A against B for contacts up to `tolerance` (m).
+        Tracks the contacts of A and B up to `tolerance` (m).
 
         Args:
-            depth: Of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the least way out over any feature that both surfaces have, and costs more. What has passed behind a surface is held by the way in either way.
+            depth: Depth of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the smallest depth over all features of both surfaces, and costs more. Both hold a piece that has passed behind a surface until it comes back.
             max_walk_steps: Bound on the steps of a walk from feature to feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
 
         Raises:
@@ -678,14 +678,14 @@ class ContactTracker:
 
     def query_trajectory(self, X_WA: drake_haptics.common.pose_like.PoseLike, X_WB: drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory:
         """
-        What k single queries would give, in one call without the GIL.
+        Contacts of k queries in turn, in one call without the GIL.
 
         Args:
             X_WA: (k, 4, 4) or (k, 7) poses of A in turn, or one pose if A rests.
-            X_WB: the same of B.
+            X_WB: poses of B, likewise.
 
         Raises:
-            ValueError: a pose is not finite or not rigid, or numbers of poses differ; nothing was asked then.
+            ValueError: a pose is not finite or not rigid, or numbers of poses differ; then no query is made.
         """
 
     def __repr__(self) -> str: ...
@@ -693,7 +693,7 @@ class ContactTracker:
     @property
     def tolerance(self) -> float:
         """
-        Distance up to which there are contacts, m. May be changed between two queries: what was learnt is kept.
+        Distance up to which there are contacts, m. It may be changed between two queries; the tracker goes on from its last answer.
 
         Raises:
             ValueError: negative or not finite.
@@ -719,15 +719,15 @@ class ContactTracker:
 
 class SceneTracker:
     """
-    All contacts of a moving tool with many objects at once; else a `ContactTracker`, A the tool and B each object. Objects are posed one by one and stay there, so that those at rest cost nothing.
+    All contacts of a moving tool with many objects at once: a `ContactTracker` in which A is the tool and B each object. Objects are posed one by one and stay there, so that those at rest cost nothing.
     """
 
     def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces], tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
-        Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
+        Tracks the contacts of `tool` with `objects`, all at the identity pose, up to `tolerance` (m).
 
         Args:
-            depth: Of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the least way out over any feature that both surfaces have, and costs more. What has passed behind a surface is held by the way in either way.
+            depth: Depth of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the smallest depth over all features of both surfaces, and costs more. Both hold a piece that has passed behind a surface until it comes back.
             max_walk_steps: Bound on the steps of a walk from feature to feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
 
         Raises:
@@ -748,7 +748,7 @@ class SceneTracker:
 
     def query(self, X_WT: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
         """
-        `ContactSet` of the tool at the pose X_WT. With a `tolerance` (m) smaller than the tracker's only of contacts up to that, for less work; the next query may ask for another.
+        `ContactSet` of the tool at the pose X_WT. A `tolerance` (m) smaller than the tracker's limits the query to contacts up to that, for less work; each query may have its own.
 
         Raises:
             ValueError: the pose is not finite or not rigid, or the tolerance not within 0 and the tracker's.
@@ -756,13 +756,13 @@ class SceneTracker:
 
     def query_trajectory(self, X_WT: drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory:
         """
-        What k single queries would give, in one call without the GIL; the objects rest.
+        Contacts of k queries in turn, in one call without the GIL; the objects rest.
 
         Args:
             X_WT: (k, 4, 4) or (k, 7) poses of the tool in turn.
 
         Raises:
-            ValueError: a pose is not finite or not rigid; nothing was asked then.
+            ValueError: a pose is not finite or not rigid; then no query is made.
         """
 
     def __repr__(self) -> str: ...
@@ -770,7 +770,7 @@ class SceneTracker:
     @property
     def tolerance(self) -> float:
         """
-        Distance up to which there are contacts, m. May be changed between two queries: what was learnt is kept.
+        Distance up to which there are contacts, m. It may be changed between two queries; the tracker goes on from its last answer.
 
         Raises:
             ValueError: negative or not finite.
@@ -796,12 +796,12 @@ class SceneTracker:
 
 class ContactExtrapolation:
     """
-    Carries contacts along with the bodies while features stay (contact_extrapolation.h). Immutable.
+    Carries contacts along with the bodies, for fixed features (contact_extrapolation.h). Immutable.
     """
 
     def __init__(self, tool: ConvexPieces, objects: Sequence[ConvexPieces], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')] | None]) -> None:
         """
-        Carries contacts of `tool` with `objects`, those of the query.
+        Carries contacts of the query's `tool` and `objects`.
 
         Args:
             X_WO: (7,) pose [qw qx qy qz x y z] of each object that never moves, None for the others.
@@ -813,16 +813,16 @@ class ContactExtrapolation:
     @overload
     def advance(self, contacts: ContactSet, found: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], now: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> ContactSet:
         """
-        The contacts where the bodies are now.
+        Returns the contacts at the bodies' current poses.
 
         Args:
             contacts: `ContactSet` of a query, not shaded.
-            found: (7 + 7 m,) poses at which it was asked, of the tool, then of the m objects that move.
-            now: (7 + 7 m,) their poses now.
+            found: (7 + 7 m,) poses of that query, of the tool, then of the m objects that move.
+            now: (7 + 7 m,) current poses of the same bodies.
 
         Raises:
-            ValueError: not poses, or not one for each body, or a contact names no features, see `contact_set`.
-            IndexError: a contact names what is not there.
+            ValueError: a pose is not valid, there is not one for each body, or a contact names no features, see `contact_set`.
+            IndexError: a contact names an object, piece or feature that does not exist.
         """
 
     @overload
@@ -881,7 +881,7 @@ class ClusterSet:
     @property
     def is_bounded(self) -> bool:
         """
-        Whether the search for the compressions met the bound on its steps: they push, but are not quite those of the least energy.
+        Whether the search for the compressions reached its bound on steps: they push, but are not quite those of least energy.
         """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
@@ -891,7 +891,7 @@ class ClusterSet:
 @overload
 def thin_contacts(contacts: ContactSet, cell: float) -> ContactSet:
     """
-    Leaves out contacts that a deeper one of the same object, nearer than `cell` (m) and with a normal that differs by less than 45°, stands for. It takes over their extents; 0 leaves nothing out.
+    Leaves out contacts near a deeper one of the same object: nearer than `cell` (m), and with a normal that differs by less than 45°. The deeper one takes over their extents; 0 leaves nothing out.
 
     Raises:
         ValueError: cell < 0.
@@ -899,12 +899,12 @@ def thin_contacts(contacts: ContactSet, cell: float) -> ContactSet:
 
 @overload
 def thin_contacts(contacts: AutoDiffContactSet, cell: float) -> AutoDiffContactSet:
-    """The same with derivatives; which contacts stay is fixed."""
+    """The same with derivatives; the contacts that stay are fixed."""
 
 @overload
 def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> ClusterSet:
     """
-    Groups contacts nearer than `tolerance` (m) with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh `tolerance` − distance.
+    Groups contacts nearer than `tolerance` (m) with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members have the weight `tolerance` − distance.
 
     Raises:
         ValueError: delta <= 0 or tolerance < 0.
@@ -912,7 +912,7 @@ def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> Cl
 
 @overload
 def cluster_contacts(contacts: AutoDiffContactSet, delta: float, tolerance: float) -> AutoDiffClusterSet:
-    """The same with derivatives; which contacts are together stays."""
+    """The same with derivatives; the groups of contacts are fixed."""
 
 @overload
 def share_stiffness(contacts: ContactSet, tolerance: float) -> ClusterSet:
@@ -925,11 +925,11 @@ def share_stiffness(contacts: ContactSet, tolerance: float) -> ClusterSet:
 
 @overload
 def share_stiffness(contacts: AutoDiffContactSet, tolerance: float) -> AutoDiffClusterSet:
-    """The same with derivatives; which contacts push stays."""
+    """The same with derivatives; the contacts that push are fixed."""
 
 class ObjectFrames:
     """
-    Where each object of a scene is and how it moves, as the core reads it. Immutable.
+    Origins and spatial velocities of all objects of a scene, as the core reads them. Immutable.
     """
 
     def __init__(self, p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]) -> None:
@@ -954,21 +954,21 @@ class ObjectFrames:
 
     def moved(self, index: Sequence[int], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]], V_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]]) -> ObjectFrames:
         """
-        Returns a copy in which some objects are elsewhere.
+        Returns a copy in which some objects have moved.
 
         Args:
-            index: which.
-            X_WO: pose (7,) [qw qx qy qz x y z] of each of them, m.
-            V_WO: spatial velocity (6,) of each of them.
+            index: indices of these objects.
+            X_WO: pose (7,) [qw qx qy qz x y z] of each, m.
+            V_WO: spatial velocity (6,) of each, [rad/s; m/s].
 
         Raises:
-            ValueError: there is not one of each for each index.
+            ValueError: there is not a pose and a velocity for each index.
             IndexError: there is no such object.
         """
 
 class ContactMaterials:
     """
-    How each object of a scene answers contact, as the core reads it. Immutable.
+    Contact stiffness and damping of all objects of a scene, as the core reads them. Immutable.
     """
 
     def __init__(self, stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> None:
@@ -1016,19 +1016,19 @@ class PenaltyWrench:
 
 def penalty_wrench_model(clusters: ClusterSet, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
     """
-    The `wrench_model` (78,) of `penalty_force` of the same, for a tick that asks for nothing else.
+    The `wrench_model` (78,) of `penalty_force` with the same arguments, for a tick that needs nothing else.
     """
 
 @overload
 def penalty_force(clusters: ClusterSet, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> PenaltyWrench:
     """
-    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull. What it takes depends on the clusters, not on how many objects there are.
+    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull. Its time depends on the number of clusters, not of objects.
 
     Args:
         X_WT: (7,) pose of the tool [qw qx qy qz x y z], m.
-        V_WT: (6,) its spatial velocity [rad/s; m/s].
-        objects: where they are.
-        materials: one for each of them.
+        V_WT: (6,) spatial velocity of the tool [rad/s; m/s].
+        objects: frames of the objects.
+        materials: materials of the objects.
 
     Raises:
         ValueError: there is not a material for each object.
@@ -1038,7 +1038,7 @@ def penalty_force(clusters: ClusterSet, X_WT: Annotated[NDArray[numpy.float64], 
 @overload
 def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> PenaltyWrench:
     """
-    The same for what is asked once, from the arguments of `ObjectFrames` and `ContactMaterials`; p_WTo (3,) is the tool's origin, m.
+    The same for a single call, from the arguments of `ObjectFrames` and `ContactMaterials`; p_WTo (3,) is the tool's origin, m.
 
     Raises:
         ValueError: a gain is negative or not finite, or rows do not match.
@@ -1053,7 +1053,7 @@ def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WT: Aut
 
 class CouplingGains:
     """
-    Spring and damper of the virtual coupling, and the most they pull with together, force and torque each by its norm. Immutable, and equal where all numbers are.
+    Gains of the virtual coupling's spring and damper, and the largest norms of the force and torque of both together. Immutable; equal if all numbers are.
     """
 
     def __init__(self, stiffness_N_per_m: float, damping_Ns_per_m: float, rotational_stiffness_Nm_per_rad: float, rotational_damping_Nms_per_rad: float, max_force_N: float = float('inf'), max_torque_Nm: float = float('inf')) -> None: ...
@@ -1089,11 +1089,11 @@ class CouplingGains:
 @overload
 def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
     """
-    Wrenches of the virtual coupling between handle H and tool, of one vector as a multiplexer joins it: an array that crosses takes as long as the law.
+    Wrenches of the virtual coupling between handle H and tool, from one vector as a multiplexer joins it: each array that is passed takes as long as the law.
 
     Args:
         joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`; poses [qw qx qy qz x y z], spatial velocities [rad/s; m/s].
-        q_HT: (7,) the tool's place in the handle.
+        q_HT: (7,) pose of the tool in the handle.
 
     Returns:
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
@@ -1104,14 +1104,14 @@ def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=
 
 @overload
 def joined_coupling_wrench(joined: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> AutoDiffVector:
-    """The same with derivatives, but by the gains."""
+    """The same with derivatives by all but the gains."""
 
 def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], max_torque_Nm: float, max_force_N: float) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
     """
     Shortens torque and force of a wrench (6,), [N·m; N], each to its limit, along its own direction.
 
     Returns:
-        (7,): the wrench and what became of it: 0 as asked, 1 at a limit, 2 not finite, for which it is zero.
+        (7,): the limited wrench and a number: 0 if it is unchanged, 1 if it was limited, 2 if it was not finite and is zero.
 
     Raises:
         ValueError: a limit is negative or not finite.
@@ -1151,7 +1151,7 @@ class RigidToolDynamics:
         """The same with derivatives."""
 
 class ConstraintStepResult:
-    """What one tick of a `ConstraintStepper` found and did. Immutable."""
+    """Result of one tick of a `ConstraintStepper`. Immutable."""
 
     def __deepcopy__(self, arg: object, /) -> object: ...
 
@@ -1168,18 +1168,18 @@ class ConstraintStepResult:
     @property
     def F_Ho_W_commanded(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
-        (6,) [torque; force] of the coupling on the handle at Ho in W, at the tick's beginning: that of `joined_coupling_wrench`.
+        (6,) [torque; force] of the coupling on the handle at Ho in W, at the tick's beginning, as from `joined_coupling_wrench`.
         """
 
     @property
     def contacts(self) -> ContactSet:
         """
-        `ContactSet` of the rows that push, ordered by object and pieces. A pair has several where it is flush.
+        `ContactSet` of the rows that push, ordered by object and pieces. A flush pair has several.
         """
 
     @property
     def friction(self) -> FrictionStep:
-        """`FrictionStep` of `contacts`, in place of clusters."""
+        """`FrictionStep` of `contacts`, which take the place of clusters."""
 
     @property
     def F_Oo_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
@@ -1190,29 +1190,31 @@ class ConstraintStepResult:
     @property
     def hessian(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
         """
-        (6, 6) slope of the forces of the step by the tool's motion in it, [N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows that push, and the slope of friction. What adds dF to the wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
+        (6, 6) slope of the step's forces by the tool's motion, [N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows that push, and the slope of friction. A change dF of the wrench on the tool changes its motion by A⁻¹ dF and V_WT by A⁻¹ dF / h.
         """
 
     @property
     def contact_stiffness(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
-        """(6, 6) the part of it that is of the rows, Σ k a aᵀ."""
+        """(6, 6) the rows' part of `hessian`, Σ k a aᵀ."""
 
     @property
     def num_rows(self) -> int:
-        """Rows within reach, those that do not push among them."""
+        """Number of rows within reach, including those that do not push."""
 
     @property
     def num_substeps(self) -> int:
-        """Parts into which a fast motion was divided, at least 1."""
+        """Number of parts of a divided fast motion, at least 1."""
 
     @property
     def num_iterations(self) -> int:
-        """Iterations of Newton's method, all solutions of the tick together."""
+        """
+        Number of iterations of Newton's method, over all solutions of the tick.
+        """
 
     @property
     def is_bounded(self) -> bool:
         """
-        Whether a bound on iterations or parts ended the tick: the tool has then gone less far than it should.
+        Whether a bound on iterations or parts ended the tick, so that the tool moved less than it should.
         """
 
     @property
@@ -1224,7 +1226,7 @@ class ConstraintStepResult:
     @property
     def is_apart(self) -> bool:
         """
-        Whether no pieces touch or overlap at the tick's beginning. Else the tool is led out at a bounded speed.
+        Whether no pieces touch or overlap at the tick's beginning. Otherwise the tool is led out at a bounded speed.
         """
 
     def __repr__(self) -> str: ...
@@ -1235,14 +1237,14 @@ class ConstraintStepResult:
 
 class ConstraintStepper:
     """
-    Contact as a constraint: a rigid tool on a virtual coupling that stays a skin away from all objects, tick after tick.
+    Contact as a constraint: in each tick, a rigid tool on a virtual coupling stays a skin away from all objects.
 
     The motion ξ = [θ; t] of To in a tick is the minimum of
 
         ½ ξᵀ H ξ − rᵀ ξ + Σ φ_i(b_i − a_iᵀ ξ),  H = M/h² + B/h + K,
         r = M V/h + B V + F − b_M,  a_i = [r_i × n_i; n_i],
 
-    with the inertia M and its velocity terms b_M, the model F, K, B of the coupling and applied wrench, and a row for each pair of convex pieces within reach and for each corner where they are flush: the distance d_i along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with k = 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads back at 20 mm/s with at most 200 N; pieces that overlap are led out at that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 wherever a row that holds pushes. Without rows it is `RigidToolDynamics.step` with the coupling alone. A fast motion is divided, so that nothing is passed through.
+    with the inertia M and its velocity terms b_M, the model F, K, B of the coupling and applied wrench, and a row for each pair of convex pieces within reach and for each corner where they are flush: the distance d_i along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with k = 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads back at 20 mm/s with at most 200 N; pieces that overlap are led out at that speed with at most 3 N in total. No contact makes energy: a_iᵀ ξ <= 0 wherever a row that holds pushes. Without rows it is `RigidToolDynamics.step` with the coupling alone. A fast motion is divided, so that nothing is passed through.
 
     As in SAP (Castro et al., "An Unconstrained Convex Formulation of Compliant Contact", 2023), contact is a convex problem of one implicit step. Threads that share a stepper take turns.
     """
@@ -1254,13 +1256,13 @@ class ConstraintStepper:
         Args:
             tool: Pieces of the tool.
             objects: Pieces of each object.
-            skin_m: (num_objects,) distance δ that the tool keeps from each object, m. What is to fit needs more clearance than it.
+            skin_m: (num_objects,) distance δ that the tool keeps from each object, m. A tool that must fit somewhere needs more clearance than that.
             dynamics: Inertia of the tool.
             gains: Spring and damper of the coupling, and their limits.
             q_HT: (7,) pose of the tool in the handle.
             period_s: Duration h of a tick, s.
-            coefficient: (num_objects,) friction μ with each object. Defaults to none.
-            break_away_m: How far the tool gives way before it slides, m. Defaults to 0.1 mm.
+            coefficient: (num_objects,) coefficient of friction μ with each object. Defaults to none.
+            break_away_m: Displacement of the tool before it slides, m. Defaults to 0.1 mm.
 
         Raises:
             ValueError: not decompositions, not one skin or coefficient for each object, or a number is out of range.
@@ -1268,13 +1270,11 @@ class ConstraintStepper:
 
     @property
     def num_anchors(self) -> int:
-        """
-        How many numbers the anchors of friction are: 8 for each object, or nothing.
-        """
+        """Number of values of the friction anchors: 8 for each object, or 0."""
 
     @property
     def num_objects(self) -> int:
-        """How many objects there are."""
+        """Number of objects."""
 
     def set_gains(self, gains: CouplingGains) -> None:
         """Changes the gains of the coupling, from the next tick on."""
@@ -1284,8 +1284,8 @@ class ConstraintStepper:
         Poses object i at the next tick's beginning.
 
         Args:
-            i: Which object.
-            X_WO: Its pose, as a tracker takes it.
+            i: Index of the object.
+            X_WO: Pose of the object, as a tracker takes it.
             V_WO: (6,) spatial velocity [rad/s; m/s] of its frame in the tick. Defaults to rest.
 
         Raises:
@@ -1299,12 +1299,12 @@ class ConstraintStepper:
 
         Args:
             q_WT, V_WT: (7,) pose [qw qx qy qz x y z] and (6,) spatial velocity [rad/s; m/s] of the tool.
-            q_WH, V_WH: The same of the handle.
-            F_applied_To_W: (6,) all other wrenches on the tool, [torque; force] at To in W, its weight among them. Defaults to zero.
-            anchors: (num_anchors,) the last tick's `friction.next_state`. Defaults to those of a tool that has touched nothing.
+            q_WH, V_WH: Pose and spatial velocity of the handle, likewise.
+            F_applied_To_W: (6,) sum of all other wrenches on the tool, [torque; force] at To in W, its weight among them. Defaults to zero.
+            anchors: (num_anchors,) `friction.next_state` of the last tick. Defaults to the anchors of a tool that has touched nothing.
 
         Raises:
-            ValueError: a value is not finite, or there are other anchors; what was learnt stays.
+            ValueError: a value is not finite, or the number of anchors differs; the stepper stays as it was.
         """
 
     def differentiate(self, state: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, F_applied_To_W: AutoDiffVector, X_WO: Sequence[AutoDiffVector], V_WO: Sequence[AutoDiffVector]) -> AutoDiffVector:
@@ -1313,12 +1313,12 @@ class ConstraintStepper:
 
         Args:
             state: (13,) pose and spatial velocity of the tool.
-            q_WH, V_WH: (7,) and (6,), those of the handle.
-            F_applied_To_W: (6,) all other wrenches on the tool.
-            X_WO, V_WO: (7,) and (6,) for each object.
+            q_WH, V_WH: (7,) and (6,) pose and spatial velocity of the handle.
+            F_applied_To_W: (6,) sum of all other wrenches on the tool.
+            X_WO, V_WO: (7,) pose and (6,) spatial velocity of each object.
 
         Returns:
-            (19 + 6 num_objects,): the state at the tick's end, the wrench of contact on the tool at its origin at the tick's beginning, and that on each object at its origin, in W.
+            (19 + 6 num_objects,): the state at the tick's end, the wrench of contact on the tool at its origin at the tick's beginning, and the wrench on each object at its origin, in W.
 
         Raises:
             ValueError: a value is not finite, or numbers of objects or of variables differ.
@@ -1374,14 +1374,14 @@ class AutoDiffContactSet:
 
     @property
     def num_derivatives(self) -> int:
-        """D, the number of variables that derivatives are by."""
+        """Number D of the variables of the derivatives."""
 
     def with_variables(self, num_derivatives: int) -> AutoDiffContactSet:
         """
-        A constant, D = 0, with derivatives by that many variables: zeros.
+        Returns a constant (D = 0) with zero derivatives by that many variables.
 
         Raises:
-            ValueError: it has derivatives.
+            ValueError: it has derivatives already.
         """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
@@ -1390,17 +1390,17 @@ class AutoDiffContactSet:
 
 def differentiate_contacts(contacts: ContactSet, tolerance: float, tool: ConvexPieces, X_WT: AutoDiffVector, objects: Sequence[ConvexPieces], X_WO: Sequence[AutoDiffVector]) -> AutoDiffContactSet:
     """
-    The answer of a query with its derivatives, while features stay (query_gradient.h).
+    Contacts of a query with derivatives, for fixed features (query_gradient.h).
 
     Args:
-        contacts: as the query gave them at these poses, not shaded.
-        tolerance: of the query, m.
+        contacts: contacts of the query at these poses, not shaded.
+        tolerance: tolerance of the query, m.
         tool, objects: the bodies of the query.
         X_WT: (7,) pose [qw qx qy qz x y z].
         X_WO: a (7,) pose for each object.
 
     Raises:
-        ValueError: a pose is not one, or numbers of objects or of variables differ, or a contact names no features, see `contact_set`.
+        ValueError: a pose is not valid, numbers of objects or of variables differ, or a contact names no features, see `contact_set`.
         IndexError: a contact names an object, a piece or a feature that is not given.
     """
 
@@ -1441,14 +1441,14 @@ class AutoDiffClusterSet:
 
     @property
     def num_derivatives(self) -> int:
-        """D, the number of variables that derivatives are by."""
+        """Number D of the variables of the derivatives."""
 
     def with_variables(self, num_derivatives: int) -> AutoDiffClusterSet:
         """
-        A constant, D = 0, with derivatives by that many variables: zeros.
+        Returns a constant (D = 0) with zero derivatives by that many variables.
 
         Raises:
-            ValueError: it has derivatives.
+            ValueError: it has derivatives already.
         """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
@@ -1457,7 +1457,7 @@ class AutoDiffClusterSet:
 
 class AutoDiffPenaltyWrench:
     """
-    A `PenaltyWrench` with derivatives by D variables; rows of wrenches and forces one after another. Immutable; copies are the object itself.
+    A `PenaltyWrench` with derivatives by D variables; its wrenches and forces are flattened by rows. Immutable; copies are the object itself.
     """
 
     @property
@@ -1482,14 +1482,14 @@ class AutoDiffPenaltyWrench:
 
     @property
     def num_derivatives(self) -> int:
-        """D, the number of variables that derivatives are by."""
+        """Number D of the variables of the derivatives."""
 
     def with_variables(self, num_derivatives: int) -> AutoDiffPenaltyWrench:
         """
-        A constant, D = 0, with derivatives by that many variables: zeros.
+        Returns a constant (D = 0) with zero derivatives by that many variables.
 
         Raises:
-            ValueError: it has derivatives.
+            ValueError: it has derivatives already.
         """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
@@ -1498,14 +1498,14 @@ class AutoDiffPenaltyWrench:
 
 class SurfaceShading:
     """
-    The surface of a decomposed mesh with normals to interpolate over its triangles (Gouraud): at each corner of a triangle the mean normal of the triangles around the vertex that are reached across edges which turn by less than the crease angle, weighted with their angles. Immutable.
+    The surface of a decomposed mesh with normals to interpolate over its triangles (Gouraud): at each corner of a triangle the mean normal, weighted by angles, of the triangles around the vertex that are reached across edges which turn by less than the crease angle. Immutable.
 
     Pieces that were not made from triangles (methods "hull" and "coacd") keep the normals of their facets.
     """
 
     def __init__(self, decomposition: ConvexPieces, crease_angle: float) -> None:
         """
-        Finds the normals once; `crease_angle` in rad, 0 for facets as they are.
+        Finds the normals once; `crease_angle` is in rad, 0 for the facets' own normals.
 
         Raises:
             ValueError: crease_angle is not in [0, π].
@@ -1513,7 +1513,7 @@ class SurfaceShading:
 
 class ContactShading:
     """
-    Force shading of the contacts of a tool with objects (paper, 4.4.1; Morgenbesser and Srinivasan 1996): turns each normal to that of the smooth surfaces that the meshes stand for, by 45° at most. Immutable.
+    Force shading of the contacts of a tool with objects (paper, 4.4.1; Morgenbesser and Srinivasan 1996): turns each normal to that of the smooth surfaces that the meshes approximate, by at most 45°. Immutable.
     """
 
     def __init__(self, tool: SurfaceShading, objects: Sequence[SurfaceShading]) -> None:
@@ -1527,7 +1527,7 @@ class ContactShading:
     @overload
     def shade(self, contacts: ContactSet, q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')]) -> ContactSet:
         """
-        The contacts with shaded normals; all else is as it was.
+        Returns the contacts with shaded normals, otherwise unchanged.
 
         Args:
             contacts: `ContactSet` of a query at these poses.
@@ -1535,7 +1535,7 @@ class ContactShading:
             q_WO: (m, 7) poses of the objects.
 
         Raises:
-            ValueError: not a pose, or not one for each object, or a contact names no features, see `contact_set`.
+            ValueError: a pose is not valid, there is not one for each object, or a contact names no features, see `contact_set`.
             IndexError: a contact names an object, piece or feature that does not exist.
         """
 
@@ -1568,7 +1568,7 @@ class FrictionStep:
 
     @property
     def next_state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
-        """(n,) what the next tick's step starts from."""
+        """(n,) state from which the next tick starts."""
 
     def __deepcopy__(self, arg: object, /) -> object: ...
 
@@ -1593,7 +1593,7 @@ class AutoDiffFrictionStep:
 
     @property
     def next_state(self) -> AutoDiffVector:
-        """(n,) what the next tick's step starts from."""
+        """(n,) state from which the next tick starts."""
 
     @property
     def value(self) -> FrictionStep:
@@ -1601,14 +1601,14 @@ class AutoDiffFrictionStep:
 
     @property
     def num_derivatives(self) -> int:
-        """D, the number of variables that derivatives are by."""
+        """Number D of the variables of the derivatives."""
 
     def with_variables(self, num_derivatives: int) -> AutoDiffFrictionStep:
         """
-        A constant, D = 0, with derivatives by that many variables: zeros.
+        Returns a constant (D = 0) with zero derivatives by that many variables.
 
         Raises:
-            ValueError: it has derivatives.
+            ValueError: it has derivatives already.
         """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
@@ -1617,17 +1617,17 @@ class AutoDiffFrictionStep:
 
 class StickSlipModel:
     """
-    Stick-slip friction after Hayward and Armstrong (2000) of a tool on objects, at the representative contacts of clusters. Immutable: its state, (n,), goes in and comes out. It is [X_WT (7); X_WO (7) of each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), load, grip], the poses and the contacts of the last tick. A slot without a load is empty.
+    Stick-slip friction after Hayward and Armstrong (2000) of a tool on objects, at the representative contacts of clusters. Immutable: the state (n,) is passed in and returned. It is [X_WT (7); X_WO (7) of each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), load, grip], the poses and the contacts of the last tick. A slot without a load is empty.
     """
 
     def __init__(self, coefficient: Sequence[float], moves: Sequence[bool], static_ratio: float, break_away_m: float, reach_m: float) -> None:
         """
         Args:
-            coefficient: (m,) coefficient of sliding friction of each object; one at 0 has none.
+            coefficient: (m,) coefficient of sliding friction of each object; 0 for no friction.
             moves: (m,) whether each object moves.
-            static_ratio: static over sliding coefficient.
+            static_ratio: ratio of the static to the sliding coefficient.
             break_away_m: displacement after which a contact breaks away.
-            reach_m: distance over which contacts hand on their adhesion.
+            reach_m: distance over which contacts hand their adhesion on.
 
         Raises:
             ValueError: a coefficient is negative, the ratio below 1, or a length not above 0.
@@ -1640,12 +1640,12 @@ class StickSlipModel:
     @overload
     def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clusters: ClusterSet, contact_wrench: PenaltyWrench, q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> FrictionStep:
         """
-        Friction now, and the state for the next tick.
+        Returns the friction of this tick, and with it the state for the next.
 
         Args:
-            state: (n,) from the last tick; zeros before the first.
-            clusters: of now.
-            contact_wrench: their normal forces are the norms of its `f_cluster_W`.
+            state: (n,) state from the last tick; zeros before the first.
+            clusters: clusters of this tick.
+            contact_wrench: wrench of the clusters; the norms of its `f_cluster_W` are the normal forces.
             q_WT: (7,) pose of the tool.
             q_WO: (7 j,) poses of the j objects that move, one after the other.
 
@@ -1656,7 +1656,7 @@ class StickSlipModel:
     @overload
     def step(self, state: AutoDiffVector, clusters: AutoDiffClusterSet, contact_wrench: AutoDiffPenaltyWrench, q_WT: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffFrictionStep:
         """
-        The same with derivatives: those of each contact as it sticks or slides, and with the neighbors it has.
+        The same with derivatives; which contacts stick or slide, and their neighbors, are fixed.
         """
 
 class BrakingGains:
@@ -1665,8 +1665,8 @@ class BrakingGains:
     def __init__(self, damping_Ns_per_m: float, distance_m: float) -> None:
         """
         Args:
-            damping_Ns_per_m: b, half-way to the surface, N·s/m.
-            distance_m: D, where braking begins, m.
+            damping_Ns_per_m: damping b half-way to the surface, N·s/m.
+            distance_m: distance D at which braking begins, m.
 
         Raises:
             ValueError: b < 0, D <= 0, or one of them is not finite.
@@ -1675,12 +1675,12 @@ class BrakingGains:
 @overload
 def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """
-    Braking of the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), s its share among contacts with like normals (braking.h). Never a pull.
+    Brakes the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, with the speed of approach v, w = 4 (d/D)(1 − d/D) and its share s among contacts with like normals (braking.h). It never pulls.
 
     Args:
-        p_WTo: (3,) tool's origin, m.
-        V_WT: (6,) its spatial velocity [rad/s; m/s].
-        objects: where they are.
+        p_WTo: (3,) origin of the tool, m.
+        V_WT: (6,) spatial velocity of the tool [rad/s; m/s].
+        objects: frames of the objects.
 
     Returns:
         (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), zero; B (36, by rows)], rotational first; then the wrench on each object at its origin in W, N·m and N.
@@ -1719,13 +1719,13 @@ class PassivityBounds:
     def __init__(self, period_s: float, max_damping_Ns_per_m: float, max_rotational_damping_Nms_per_rad: float, reserve_J: float) -> None:
         """
         Args:
-            period_s: the tick, s.
+            period_s: duration of a tick, s.
             max_damping_Ns_per_m: largest damping, N·s/m.
-            max_rotational_damping_Nms_per_rad: N·m·s/rad.
+            max_rotational_damping_Nms_per_rad: largest rotational damping, N·m·s/rad.
             reserve_J: largest balance that is kept, J.
 
         Raises:
-            ValueError: the period is not above 0, another one below 0, or one of them not finite.
+            ValueError: the period is not above 0, another bound is below 0, or one of them is not finite.
         """
 
 @overload
@@ -1735,13 +1735,13 @@ def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), o
 
     Args:
         state: (8,) balance of the last tick, J, and the handle's pose then.
-        F_Ho_W_rendered: (6,) wrench on the handle at Ho in W that was held since, [N·m; N].
-        F_Ho_W_desired: (6,) wrench asked for now.
+        F_Ho_W_rendered: (6,) wrench on the handle at Ho in W that was held since then, [N·m; N].
+        F_Ho_W_desired: (6,) wrench that is desired now.
         q_WH: (7,) pose now, [qw qx qy qz x y z].
         V_WH: (6,) spatial velocity now, [rad/s; m/s].
 
     Returns:
-        (14,) wrench to show (6), F_Ho_W_desired itself where the balance is not below 0; the next state (8), balance now, J, and pose now.
+        (14,) wrench to show (6), F_Ho_W_desired itself where the balance is not below 0; then the next state (8), the balance and pose now.
     """
 
 @overload
@@ -1750,7 +1750,7 @@ def passivity_control(state: AutoDiffVector, F_Ho_W_rendered: AutoDiffVector, F_
 
 class FrameChange:
     """
-    Tells in a frame A what is given in a frame B that does not move in it, and wrenches the other way.
+    Changes poses and velocities from a frame B to a frame A in which B rests, and wrenches from A to B.
     """
 
     def __init__(self, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> None:
@@ -1763,14 +1763,14 @@ class FrameChange:
 
     def change_motion(self, X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
         """
-        Pose and spatial velocity of H in A, (13,), of those in B: (7,), m, and (6,), [rad/s; m/s].
+        Pose and spatial velocity of H in A, (13,), from those in B: (7,), m, and (6,), [rad/s; m/s].
         """
 
     def change_wrench_back(self, F_A: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
-        """Wrench (6,) in B of one in A, [N·m; N]."""
+        """Wrench (6,) in B from that in A, [N·m; N]."""
 
     def change_slopes_back(self, slopes_A: Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='C')]]:
-        """Stiffness and damping (6, 6) in B of those in A, (72,) by rows."""
+        """Stiffness and damping (6, 6) in B from those in A, (72,) by rows."""
 
 class PosePath:
     """A pose over time, a cubic per segment. Immutable."""
@@ -1780,9 +1780,9 @@ class PosePath:
         Path of m segments.
 
         Args:
-            starts_s: (m,) where they begin, rising from 0 s. The last one never ends.
-            cubics: (m, 4, 7) coefficients by power of the time since the start, of [qw qx qy qz x y z]; the quaternion of any length.
-            period_s: when the path begins again; infinite if never.
+            starts_s: (m,) starts of the segments, rising from 0 s. The last one never ends.
+            cubics: (m, 4, 7) coefficients by power of the time since the start, of [qw qx qy qz x y z]; the quaternion may have any length.
+            period_s: time until the path repeats, s; infinite if never.
 
         Raises:
             ValueError: sizes do not match or there is no period.
@@ -1795,17 +1795,17 @@ class PosePath:
 
 class ArmDynamics:
     """
-    A chain of six revolute joints and a hand that draws its handle H along a path. States are (12,): angles, rad, and speeds, rad/s. All methods raise FloatingPointError where a state is not finite.
+    A chain of six revolute joints and a hand that pulls its handle H along a path. States are (12,): angles, rad, and speeds, rad/s. All methods raise FloatingPointError where a state is not finite.
     """
 
     def __init__(self, J_WH: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], path: PosePath, q_PH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], gains: CouplingGains) -> None:
         """
         Args:
             J_WH: (6, 6) spatial velocity of H per joint speed, all angles zero.
-            q_WH: (7,) its pose there.
-            path: X_WP over time.
-            q_PH: (7,) where the hand wants the handle in P.
-            gains: of the hand.
+            q_WH: (7,) pose of H, all angles zero.
+            path: pose X_WP over time.
+            q_PH: (7,) pose in P at which the hand wants the handle.
+            gains: gains of the hand's spring and damper.
         """
 
     @overload
@@ -1828,20 +1828,20 @@ class ArmDynamics:
 
 class EnergyAccount:
     """
-    The books of one part of a haptic loop, J. What went in and neither came out nor is stored is lost; a part that makes no energy never gets back what it lost.
+    Energy account of one part of a haptic loop, J. Energy that went in and neither came out nor is stored is lost; a passive part never regains lost energy.
     """
 
     @property
     def in_J(self) -> float:
-        """What went into the part, through all its ports."""
+        """Energy that went into the part, through all its ports."""
 
     @property
     def out_J(self) -> float:
-        """What came out."""
+        """Energy that came out."""
 
     @property
     def stored_J(self) -> float:
-        """What it holds."""
+        """Energy that the part stores."""
 
     @property
     def lost_J(self) -> float:
@@ -1849,22 +1849,24 @@ class EnergyAccount:
 
     @property
     def damped_J(self) -> float:
-        """Part of it: what dampers took."""
+        """Part of `lost_J` that dampers took."""
 
     @property
     def created_J(self) -> float:
-        """What it made: the largest fall of `lost_J` from any earlier value."""
+        """
+        Energy that the part made: the largest fall of `lost_J` from any earlier value.
+        """
 
     @property
     def bound_J(self) -> float:
         """
-        What the sampling of its force explains of that, over the same stretch of time.
+        Energy that the sampling of its force explains over the same stretch of time.
         """
 
     @property
     def beyond_J(self) -> float:
         """
-        The most it made over any stretch of time beyond what sampling explains there.
+        Largest energy made over a stretch of time, less the energy that sampling explains there.
         """
 
 class EnergyLedger:
@@ -1875,34 +1877,34 @@ class EnergyLedger:
     def __init__(self, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], period_s: float, sources: Sequence[str]) -> None:
         """
         Args:
-            dynamics: of the tool.
-            gains: of the coupling.
+            dynamics: inertia of the tool.
+            gains: gains of the coupling.
             q_HT: (7,) pose of the tool in the handle at which its spring rests.
-            period_s: the tick, s.
+            period_s: duration of a tick, s.
             sources: names of the other sources of wrench on the tool.
 
         Raises:
-            ValueError: the tick is not above 0 s, or a name is there twice or that of another account.
+            ValueError: the tick is not above 0 s, or a name occurs twice or is that of another account.
         """
 
     def begin_again(self, gains: CouplingGains) -> None:
         """
-        To be called where gains of the coupling or of a source were changed. The tick up to the next `add` is left out of the books, and so is what the change puts into springs or takes out.
+        Goes on after a change of gains, of the coupling or of a source. The tick up to the next `add` is left out of the accounts, and so is the energy that the change puts into springs or takes out.
 
         Args:
-            gains: of the coupling from now on.
+            gains: gains of the coupling from now on.
         """
 
     def add(self, tool_state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], F_Ho_W_rendered: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], coupling: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], stored_J: Sequence[float]) -> None:
         """
-        Books the tick between the call before and this one; the first call only says what is stored. All is read at one instant, after one step of the tool and before the next. A tick with an energy that is not finite is left out.
+        Books the tick between the last call and this one; the first call only sets the stored energies. All values are of one instant, after a step of the tool and before the next. A tick with an energy that is not finite is left out.
 
         Args:
             tool_state: (13,) = [pose (7), m; spatial velocity (6), rad/s and m/s].
             q_WH: (7,) pose of the handle.
             F_Ho_W_rendered: (6,) wrench that was held on the handle up to now, at Ho in W, N·m and N.
             coupling: (78,) wrench model of the coupling on the tool.
-            wrench_models: (78,) of each source.
+            wrench_models: (78,) wrench model of each source.
             stored_J: elastic or potential energy of each source.
 
         Raises:
@@ -1912,7 +1914,7 @@ class EnergyLedger:
     @property
     def accounts(self) -> dict[str, EnergyAccount]:
         """
-        `EnergyAccount` of each part by its name, as it stands now: the loop as a whole as the hand has it at its port, `device`; `display`, `coupling`, `tool`, and each source.
+        `EnergyAccount` of each part by its name, as it stands now: `device`, the whole loop as the hand feels it at its port; `display`, `coupling`, `tool`, and each source.
         """
 
 def contact_energy(clusters: ClusterSet, stiffness: Sequence[float], tolerance: float) -> float:
@@ -1921,11 +1923,11 @@ def contact_energy(clusters: ClusterSet, stiffness: Sequence[float], tolerance: 
 
     Args:
         clusters: `ClusterSet`.
-        stiffness: of each object, N/m.
-        tolerance: t, m.
+        stiffness: stiffness of each object, N/m.
+        tolerance: distance below which contacts push, m.
 
     Raises:
-        IndexError: a cluster names an object that has none.
+        IndexError: a cluster names an object without a stiffness.
     """
 
 def weight_energy(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
@@ -1933,8 +1935,8 @@ def weight_energy(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order=
     Potential energy of the tool's weight, J, zero with its center of mass at the world's origin.
 
     Args:
-        q_WT: (7,) its pose.
-        p_TTcm: (3,) center of mass in its frame, m.
+        q_WT: (7,) pose of the tool.
+        p_TTcm: (3,) center of mass in the tool's frame, m.
         weight_W: (3,) mass times gravity, N.
     """
 
@@ -1945,20 +1947,20 @@ def clock_interval() -> float:
 
 class DeviceStatePacket:
     """
-    What a driver sends (docs/device-protocol.md). The handle H in the frame B of the device's base, SI.
+    Packet that a driver sends (docs/device-protocol.md): the handle H in the frame B of the device's base, SI.
     """
 
     @property
     def session(self) -> int:
-        """Host that is served, or 0."""
+        """Session of the host that is served, or 0."""
 
     @property
     def sequence(self) -> int:
-        """Rises by one, and wraps."""
+        """Number of the packet; rises by one, and wraps."""
 
     @property
     def time_ns(self) -> int:
-        """Of the sample, driver's clock."""
+        """Time of the sample by the driver's clock, ns."""
 
     @property
     def X_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
@@ -1974,11 +1976,11 @@ class DeviceStatePacket:
 
     @property
     def boot(self) -> int:
-        """Random in each run of the driver."""
+        """Number that is random in each run of the driver."""
 
     @property
     def command_sequence(self) -> int:
-        """Of the newest command that was accepted."""
+        """Number of the newest command that was accepted."""
 
     @property
     def buttons(self) -> int:
@@ -1986,7 +1988,7 @@ class DeviceStatePacket:
 
     @property
     def rejected(self) -> int:
-        """Packets refused so far."""
+        """Number of packets refused so far."""
 
     @property
     def max_force_N(self) -> float:
@@ -1998,26 +2000,26 @@ class DeviceStatePacket:
 
     @property
     def gate(self) -> int:
-        """As `backend.GateState`."""
+        """State, a number of `backend.GateState`."""
 
     @property
     def fault(self) -> int:
-        """As `backend.Fault`."""
+        """Fault, a number of `backend.Fault`."""
 
 class DeviceCommandPacket:
-    """What a host sends (docs/device-protocol.md), SI."""
+    """Packet that a host sends (docs/device-protocol.md), SI."""
 
     @property
     def session(self) -> int:
-        """Random in each run of it."""
+        """Number that is random in each run of the host."""
 
     @property
     def sequence(self) -> int:
-        """Rises by one, and wraps."""
+        """Number of the packet; rises by one, and wraps."""
 
     @property
     def time_ns(self) -> int:
-        """Of sending, host's clock."""
+        """Time of sending by the host's clock, ns."""
 
     @property
     def F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
@@ -2025,7 +2027,7 @@ class DeviceCommandPacket:
 
     @property
     def state_sequence(self) -> int:
-        """Of the state that this answers."""
+        """Number of the state that this answers."""
 
     @property
     def ttl_us(self) -> int:
@@ -2033,22 +2035,22 @@ class DeviceCommandPacket:
 
     @property
     def enable(self) -> bool:
-        """Whether force is to be shown."""
+        """Whether to show force."""
 
 def pack_state(*, sequence: int, time_ns: int, X_BH: object, V_BH: object, F_Ho_B: object, boot: int, session: int, command_sequence: int, buttons: int, rejected: int, max_force_N: float, max_torque_Nm: float, gate: int, fault: int) -> bytes:
     """
     The 208 bytes of a state packet; the arguments are the attributes of `DeviceStatePacket`.
 
     Raises:
-        ValueError: a number does not fit its field, or a wrong shape.
+        ValueError: a number does not fit, or a shape is wrong.
     """
 
 def unpack_state(packet: bytes) -> DeviceStatePacket:
     """
-    What a state packet says. Its real numbers may be NaN or infinite.
+    Reads a state packet. Its real numbers may be NaN or infinite.
 
     Raises:
-        ValueError: it is damaged or none; says which check failed.
+        ValueError: it is damaged or not a state packet; the message names the check that failed.
     """
 
 def pack_command(*, session: int, sequence: int, time_ns: int, F_Ho_B: object, state_sequence: int, ttl_us: int, enable: bool) -> bytes:
@@ -2056,20 +2058,20 @@ def pack_command(*, session: int, sequence: int, time_ns: int, F_Ho_B: object, s
     The 88 bytes of a command packet; the arguments are the attributes of `DeviceCommandPacket`.
 
     Raises:
-        ValueError: a number does not fit its field, or a wrong shape.
+        ValueError: a number does not fit, or a shape is wrong.
     """
 
 def unpack_command(packet: bytes) -> DeviceCommandPacket:
     """
-    What a command packet says. Its wrench may be NaN or infinite.
+    Reads a command packet. Its wrench may be NaN or infinite.
 
     Raises:
-        ValueError: it is damaged or none; says which check failed.
+        ValueError: it is damaged or not a command packet; the message names the check that failed.
     """
 
 class DeviceGate:
     """
-    What stands between commands and a hand, in the driver's process: the state machine of gate.h (docs/device-protocol.md), time as an argument. Force and torque never exceed the limits, in any state.
+    Safety gate between commands and a hand, in the driver's process: the state machine of gate.h (docs/device-protocol.md), with time as an argument. Force and torque never exceed the limits, in any state.
     """
 
     def __init__(self, *, max_force_N: float, max_torque_Nm: float, max_speed_m_per_s: float = 2.0, max_turn_rate_rad_per_s: float = 30.0, ramp_in_s: float = 0.2, ramp_out_s: float = 0.02, max_ttl_s: float = 0.1) -> None:
@@ -2077,11 +2079,11 @@ class DeviceGate:
         Args:
             max_force_N: Largest norm of the force, N; 0 for none.
             max_torque_Nm: Largest norm of the torque, N·m; 0 for none.
-            max_speed_m_per_s: A faster handle is a fault while active.
-            max_turn_rate_rad_per_s: Likewise for its turning.
-            ramp_in_s: From none to full, 0.001 to 10 s.
-            ramp_out_s: From full to none, 0.001 to 1 s.
-            max_ttl_s: The longest that a command lives, 1e-6 to 1 s.
+            max_speed_m_per_s: Largest speed of the handle, m/s; a faster one is a fault while active.
+            max_turn_rate_rad_per_s: Largest turn rate, rad/s, likewise.
+            ramp_in_s: Time from no force to full force, 0.001 to 10 s.
+            ramp_out_s: Time from full force to none, 0.001 to 1 s.
+            max_ttl_s: Longest time to live of a command, 1e-6 to 1 s.
 
         Raises:
             ValueError: a limit is not finite or out of its bounds.
@@ -2089,53 +2091,53 @@ class DeviceGate:
 
     def receive(self, now_ns: int, data: bytes) -> str:
         """
-        Takes a packet in, whatever it holds.
+        Takes a packet with any content.
 
         Args:
-            now_ns: The driver's monotonic clock, ns.
+            now_ns: Time of the driver's monotonic clock, ns.
             data: The datagram.
 
         Returns:
-            'accepted', or why not: a key of `counts`.
+            'accepted', or the reason for refusal: a key of `counts`.
 
         Raises:
-            ValueError: now_ns is no 64-bit time.
+            ValueError: now_ns is not a 64-bit time.
         """
 
     def step(self, now_ns: int, X_BH: object, V_BH: object) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
-        Moves the time on; once per tick, after the packets.
+        Advances the time; called once per tick, after the packets.
 
         Args:
-            now_ns: The driver's monotonic clock, ns.
-            X_BH: (7,) the handle's pose [qw qx qy qz x y z], m. A value that is not finite is a fault.
-            V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s; likewise.
+            now_ns: Time of the driver's monotonic clock, ns.
+            X_BH: (7,) pose of the handle [qw qx qy qz x y z], m. A value that is not finite is a fault.
+            V_BH: (6,) spatial velocity of the handle [ω; v], rad/s and m/s; likewise.
 
         Returns:
             (6,) the wrench to show [τ; f] at Ho in B, N·m and N.
 
         Raises:
-            ValueError: X_BH or V_BH has a wrong shape, or now_ns is no 64-bit time.
+            ValueError: X_BH or V_BH has a wrong shape, or now_ns is not a 64-bit time.
         """
 
     def fail(self) -> None:
-        """The driver's own hardware is at fault: zero wrench at once."""
+        """Reports a fault of the driver's own hardware: zero wrench at once."""
 
     @property
     def state(self) -> int:
-        """As `backend.GateState`."""
+        """State, a number of `backend.GateState`."""
 
     @property
     def fault(self) -> int:
-        """As `backend.Fault`."""
+        """Fault, a number of `backend.Fault`."""
 
     @property
     def session(self) -> int:
-        """Host that is served, or 0."""
+        """Session of the host that is served, or 0."""
 
     @property
     def command_sequence(self) -> int:
-        """Of the newest command that was accepted."""
+        """Sequence of the newest command that was accepted."""
 
     @property
     def command_F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
@@ -2147,21 +2149,21 @@ class DeviceGate:
 
     @property
     def scale(self) -> float:
-        """Share of it that is shown, 0 to 1."""
+        """Share of the newest wrench that is shown, 0 to 1."""
 
     @property
     def rejected(self) -> int:
-        """Packets refused so far."""
+        """Number of packets refused so far."""
 
     @property
     def counts(self) -> dict[str, int]:
-        """Packets by verdict."""
+        """Number of packets by verdict."""
 
     def __deepcopy__(self, arg: object, /) -> DeviceGate: ...
 
 class ServoLaw:
     """
-    What a servo shows between the ticks of a slower loop: the last local wrench F − K δ − B (V − V₀), δ = [rotation vector; translation] from X₀ to X, each of force and torque within its limit. A wrench that is not renewed is shown for `hold_s`, then goes to zero within `release_s`; one that is renewed comes back within `engage_s`. Wrenches are [τ; f] at the handle's origin, N·m and N, in one frame with poses [qw qx qy qz x y z], m, and velocities [ω; v], rad/s and m/s.
+    Computes the wrench that a servo shows between the ticks of a slower loop: the last local wrench F − K δ − B (V − V₀), δ = [rotation vector; translation] from X₀ to X, each of force and torque within its limit. A wrench that is not renewed is shown for `hold_s`, then goes to zero within `release_s`; a wrench that is renewed comes back within `engage_s`. Wrenches are [τ; f] at the handle's origin, N·m and N, in one frame with poses [qw qx qy qz x y z], m, and velocities [ω; v], rad/s and m/s.
     """
 
     def __init__(self, *, max_force_N: float, max_torque_Nm: float, hold_s: float = 0.02, release_s: float = 0.02, engage_s: float = 0.2) -> None:
@@ -2172,7 +2174,7 @@ class ServoLaw:
 
     def adopt(self, F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], X: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], K: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None, B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None, time_s: float) -> None:
         """
-        Takes a wrench (6,) as of `time_s`, for the pose X₀ (7,) and the velocity V₀ (6,), with its slopes K and B (6, 6). Only the nearest symmetric slope without a negative eigenvalue acts: a servo gives no energy. What is not finite ends all force at once.
+        Takes a wrench (6,) as of `time_s`, for the pose X₀ (7,) and the velocity V₀ (6,), with its slopes K and B (6, 6). Only the nearest symmetric slope without a negative eigenvalue acts, so that the servo is passive. A value that is not finite ends all force at once.
         """
 
     def step(self, time_s: float, X: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
@@ -2182,18 +2184,18 @@ class ServoLaw:
 
     @property
     def scale(self) -> float:
-        """Part of the wrench that is shown, 0 to 1."""
+        """Share of the wrench that is shown, 0 to 1."""
 
     @property
     def num_not_finite(self) -> int:
-        """Wrenches and states that were not finite."""
+        """Number of wrenches and states that were not finite."""
 
     @property
     def num_not_passive(self) -> int:
-        """Wrenches whose K or B was not passive."""
+        """Number of wrenches whose K or B was not passive."""
 
 class HandleState:
-    """What a device last told, in its base frame B."""
+    """Last state that a device sent, in its base frame B."""
 
     @property
     def number(self) -> int:
@@ -2201,7 +2203,7 @@ class HandleState:
 
     @property
     def time_s(self) -> float:
-        """When, by the driver's clock, s."""
+        """Time by the driver's clock, s."""
 
     @property
     def X_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
@@ -2229,18 +2231,18 @@ class HandleState:
 
     @property
     def gate(self) -> int:
-        """Number of a `GateState`."""
+        """State, a number of `GateState`."""
 
     @property
     def fault(self) -> int:
-        """Number of a `Fault`."""
+        """Fault, a number of `Fault`."""
 
 class UdpServoStatus:
-    """What a `UdpServo` knows. Counted from the start."""
+    """Counters and state of a `UdpServo`, counted from the start."""
 
     @property
     def received(self) -> int:
-        """States that came whole."""
+        """Valid states that came, late and duplicate ones too."""
 
     @property
     def lost(self) -> int:
@@ -2252,11 +2254,11 @@ class UdpServoStatus:
 
     @property
     def duplicate(self) -> int:
-        """States that came before."""
+        """States that had come before."""
 
     @property
     def damaged(self) -> int:
-        """Packets that are no whole state."""
+        """Packets that are not a whole state."""
 
     @property
     def not_finite(self) -> int:
@@ -2264,12 +2266,12 @@ class UdpServoStatus:
 
     @property
     def restarts(self) -> int:
-        """Of the driver."""
+        """Restarts of the driver."""
 
     @property
     def silences(self) -> int:
         """
-        Times that the driver was silent for so long that the servo looked for it again.
+        Silences of the driver that were so long that the servo looked for it again.
         """
 
     @property
@@ -2278,35 +2280,35 @@ class UdpServoStatus:
 
     @property
     def sent(self) -> int:
-        """Commands."""
+        """Commands sent."""
 
     @property
     def wrenches_not_finite(self) -> int:
-        """Wrenches that were not finite, and shown as zero."""
+        """Wrenches and states that were not finite: force ended."""
 
     @property
     def wrenches_not_passive(self) -> int:
-        """Wrenches whose K or B gave energy, which was left out."""
+        """Wrenches whose K or B was not passive, and was projected."""
 
     @property
     def scale(self) -> float:
-        """Part of the wrench that is sent."""
+        """Share of the wrench that is sent."""
 
     @property
     def is_running(self) -> bool:
-        """False once closed."""
+        """Whether the thread runs."""
 
     @property
     def is_heard(self) -> bool:
-        """States are coming."""
+        """Whether states are coming."""
 
     @property
     def is_active(self) -> bool:
-        """A wrench may be shown."""
+        """Whether a wrench may be shown."""
 
     @property
     def has_realtime_priority(self) -> bool:
-        """Whether the system granted it to the thread."""
+        """Whether the system granted the thread real-time priority."""
 
     @property
     def has_locked_memory(self) -> bool:
@@ -2314,24 +2316,24 @@ class UdpServoStatus:
 
 class UdpServo:
     """
-    A thread that answers every state of a device's driver with the wrench of a `ServoLaw`. It runs without Python; no method but `close` waits for it. One thread of the program may use it.
+    A thread that answers every state of a device's driver with the wrench of a `ServoLaw`. It runs without Python; only `close` waits for it. Only one thread of the program may use it.
     """
 
     def __init__(self, host: str, port: int, *, ttl_s: float = 0.05, max_rate_hz: float = 4000.0, max_force_N: float = float('inf'), max_torque_Nm: float = float('inf'), hold_s: float = 0.02, release_s: float = 0.02, engage_s: float = 0.2) -> None:
         """
-        Starts to look for the driver at that address.
+        Starts the thread, which looks for the driver at that address.
 
         Args:
-            host: name or number, IPv4 or IPv6.
-            port: UDP.
-            ttl_s: how long the device shows a command that is not renewed. Silence of the driver for twice that, and half a second at least, is a fault.
-            max_rate_hz: of commands.
+            host: name or address, IPv4 or IPv6.
+            port: UDP port.
+            ttl_s: time that the device shows a command that is not renewed. A silence of the driver for twice that time, and at least half a second, is a fault.
+            max_rate_hz: largest rate of commands.
             max_force_N, max_torque_Nm: largest norms, where the device allows more.
-            hold_s, release_s, engage_s: of the `ServoLaw`.
+            hold_s, release_s, engage_s: times of the `ServoLaw`.
 
         Raises:
             ValueError: a time or the rate is not finite and above zero, or a limit is negative or NaN.
-            RuntimeError: there is no such host, or no socket to be had.
+            RuntimeError: there is no such host, or no socket is available.
         """
 
     def read(self) -> HandleState | None:
@@ -2344,7 +2346,7 @@ class UdpServo:
 
     def recover(self) -> None:
         """
-        Takes up again after a fault: disabled until the device is idle, then enabled.
+        Recovers from a fault: disabled until the device is idle, then enabled.
         """
 
     def close(self) -> None:
@@ -2357,7 +2359,7 @@ class UdpServo:
 
     def lateness_s(self) -> tuple[float, float, float]:
         """
-        Returns p50, p99 and p99.9 of how much later than the promptest one of the last 10 s each state was answered, s, rounded up by at most a fifth.
+        Returns p50, p99 and p99.9 of the lateness of answers, s, relative to the promptest one of the last 10 to 20 s, rounded up by at most a fifth.
         """
 
     @property
@@ -2366,20 +2368,20 @@ class UdpServo:
 
 def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], coupling_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], contact_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
     """
-    How the wrench on a handle changes with the handle's motion, the tool following at rest between coupling and contact (springs in series; Guyan, AIAA Journal 3(2), 1965).
+    Slopes of the wrench on a handle by the handle's motion, with the tool in equilibrium between coupling and contact (springs in series; Guyan, AIAA Journal 3(2), 1965).
 
     Args:
         q_WH, q_WT: (7,) poses [qw qx qy qz x y z] of handle and tool.
         coupling_model: (78,) [F; K; B] of the coupling on the tool, at To in W.
-        contact_model: (78,) the sum of all others.
+        contact_model: (78,) sum of all other wrench models.
 
     Returns:
-        (72,): K then B by rows, at Ho in W; symmetric, no negative eigenvalue. The wrench is F − K δ − B ΔV.
+        (72,): K then B by rows, at Ho in W; symmetric, without a negative eigenvalue. The wrench is F − K δ − B ΔV.
     """
 
 class ServoTool:
     """
-    The tool as a servo solves it: each period is one exact step of contact from the device's newest handle, and ends in the local wrench that a `ServoLaw` carries on until the next. It knows no clock. Poses are [qw qx qy qz x y z], m; velocities [ω; v], rad/s and m/s; wrenches [τ; f], N·m and N.
+    Solves the tool for a servo: each period is one exact step of contact from the device's newest handle state. It yields the local wrench that a `ServoLaw` extrapolates until the next period. It has no clock. Poses are [qw qx qy qz x y z], m; velocities [ω; v], rad/s and m/s; wrenches [τ; f], N·m and N.
     """
 
     def __init__(self, stepper: ConstraintStepper, q_WB: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike) -> None:
@@ -2415,57 +2417,59 @@ class ServoTool:
 
         Args:
             q_BH, V_BH: Pose (7,) and velocity (6,) of the handle in the device's base frame.
-            F_applied_To_W: (6,) all other wrenches on the tool, its weight among them. Defaults to zero.
+            F_applied_To_W: (6,) sum of all other wrenches on the tool, its weight among them. Defaults to zero.
 
         Returns:
-            The wrench (6,) on the handle in the base frame at the period's beginning, and its slopes K and B (6, 6), those of coupling and contact in series: it changes by -K δ - B ΔV as the handle moves on.
+            The wrench (6,) on the handle in the base frame at the period's beginning, and its slopes K and B (6, 6), those of coupling and contact in series: the wrench changes by -K δ - B ΔV as the handle moves on.
 
         Raises:
-            ValueError: A value is not finite, or no pose; the tool stays where it was.
+            ValueError: A value is not finite, or not a pose; the tool stays where it was.
         """
 
 class ContactServoStatus:
-    """What a `ContactServo` has done. Counted from the start."""
+    """Counters and state of a `ContactServo`, counted from the start."""
 
     @property
     def num_solved(self) -> int:
-        """Periods in which contact was solved."""
+        """Number of periods in which contact was solved."""
 
     @property
     def num_late(self) -> int:
         """
-        Periods that were overrun: the servo went on by the linear wrench of the last one.
+        Number of periods that were overrun: the servo went on with the linear wrench of the last one.
         """
 
     @property
     def num_refused(self) -> int:
-        """Handles that were no pose."""
+        """Number of handle states that were not poses."""
 
     @property
     def is_running(self) -> bool:
-        """False once closed."""
+        """Whether the thread runs."""
 
 class ContactServo:
     """
-    A thread that solves contact for a `UdpServo`, in each of its periods with the device's newest handle, and gives it the local wrench, which nobody else may do then. It runs without Python; no method but `close` waits for it. One thread of the program may use it.
+    A thread that solves contact for a `UdpServo`, in each period with the device's newest handle state, and publishes the local wrench to it, which nothing else may do then. It runs without Python; only `close` waits for it. Only one thread of the program may use it.
     """
 
     def __init__(self, servo: UdpServo, tool: ServoTool) -> None:
         """
-        Starts to wait for the first `renew`.
+        Starts the thread, which waits for the first `renew`.
 
         Args:
-            servo: It answers the device.
-            tool: It is copied.
+            servo: Servo that answers the device.
+            tool: Tool, which is copied.
         """
 
     def renew(self, gains: CouplingGains, F_applied_To_W: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> None:
         """
-        Says that the loop goes on, and with which coupling and which other wrenches (6,) on the tool at To in W, its weight among them. Where this is not called in time, the servo releases as its law says.
+        Says that the loop goes on, and sets the coupling and the sum (6,) of the other wrenches on the tool at To in W, its weight among them. If this is not called in time, the servo releases the force by its law.
         """
 
     def set_share(self, share: float) -> None:
-        """Shows that part of the wrench, 0 to 1, from the next `renew` on."""
+        """
+        Sets the share of the wrench that is shown, 0 to 1, from the next `renew` on.
+        """
 
     @property
     def tool_state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
@@ -2479,20 +2483,20 @@ class ContactServo:
 
 def run_tool_loop(tool: ConvexPieces, objects: Sequence[ConvexPieces], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], tolerance: float, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], stiffness: float, damping: float, h: float, handle: Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], start: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]]:
     """
-    What a haptic loop without effects computes, tick after tick, without Drake and without the GIL: query, shared stiffness, penalty force, coupling, and the tool's implicit step.
+    Computes a haptic loop without effects, tick after tick, without Drake and without the GIL: query, shared stiffness, penalty force, coupling, and the tool's implicit step.
 
     Args:
-        tool, objects: their pieces; the objects rest.
+        tool, objects: pieces of the tool and of each object; the objects rest.
         q_WO: (m, 7) poses [qw qx qy qz x y z] of the objects.
-        tolerance: contacts up to this distance push, m.
-        dynamics, gains, q_HT: of the tool and its coupling.
-        stiffness, damping: of every contact, N/m and N·s/m.
-        h: the tick, s.
+        tolerance: distance up to which contacts push, m.
+        dynamics, gains, q_HT: inertia of the tool, gains of its coupling, and its pose (7,) in the handle.
+        stiffness, damping: gains of every contact, N/m and N·s/m.
+        h: duration of a tick, s.
         handle: (n, 13) pose (7) and spatial velocity (6) of the handle at each tick.
-        start: (13,) the same of the tool before the first tick.
+        start: (13,) pose and spatial velocity of the tool before the first tick.
 
     Returns:
-        The tool's state (n, 13) after each tick; contacts (n,) and the smallest distance (n,), m, at its beginning, the tolerance where there is none; and the time (n,) that it took, s.
+        The tool's state (n, 13) after each tick; the number of contacts (n,) and the smallest distance (n,), m, at its beginning, the tolerance without contacts; and the time (n,) that the tick took, s.
 
     Raises:
         ValueError: poses or gains are out of range.
@@ -2500,26 +2504,26 @@ def run_tool_loop(tool: ConvexPieces, objects: Sequence[ConvexPieces], q_WO: Ann
 
 class ContactChain(SceneTracker):
     """
-    A `SceneTracker` that goes on from the contacts to what they do to a tool that a coupling holds: query, clusters, penalty force, coupling and the tool's step in one call. What was asked last is kept, so that a query of the same pose finds nothing again.
+    A `SceneTracker` that also computes the motion of a tool on a coupling under its contacts: query, clusters, penalty force, coupling and the tool's step in one call. It keeps its last results, so that another query of the same pose costs nothing.
     """
 
     def __init__(self, tracker: SceneTracker) -> None:
-        """Goes on from what a tracker knows; it stays as it is."""
+        """Goes on from the state of a tracker, which stays as it is."""
 
     def set_law(self, tolerance: float, delta: float | None, objects: ObjectFrames, materials: ContactMaterials) -> None:
         """
-        Says how contacts push.
+        Sets the law by which contacts push.
 
         Args:
-            tolerance: contacts below it push, m.
-            delta: cell of the octree, m; None lets contacts share stiffness.
-            objects: where they rest.
-            materials: one for each of them.
+            tolerance: distance below which contacts push, m.
+            delta: size of the octree's cells, m; None lets contacts share stiffness.
+            objects: frames of the objects, which rest.
+            materials: materials of the objects.
         """
 
     def query(self, X_WT: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
         """
-        As `SceneTracker.query`; what was asked last is not looked for again where the pose is a vector (7,).
+        As `SceneTracker.query`, but for a pose vector (7,) equal to the last one the last results are returned.
         """
 
     def step_tool(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], dynamics: RigidToolDynamics, h: float, others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
@@ -2527,10 +2531,10 @@ class ContactChain(SceneTracker):
         The tool's next state (13,): `RigidToolDynamics.step` under the coupling, the contacts and other wrench models, in this order.
 
         Args:
-            joined, q_HT: as of `joined_coupling_wrench`.
-            dynamics: of the tool.
-            h: the step, s.
-            others: (78,) wrench models.
+            joined, q_HT: arguments of `joined_coupling_wrench`.
+            dynamics: inertia of the tool.
+            h: duration of the step, s.
+            others: other wrench models (78,).
 
         Raises:
             ValueError: a pose is not finite, or a gain is out of range.
@@ -2544,17 +2548,17 @@ class ContactChain(SceneTracker):
     @property
     def deepest(self) -> tuple[float, float]:
         """
-        Least distance of the contacts that were asked for last (m, infinite without any), and the distance below which they push, m.
+        Least distance of the contacts that were found last (m, infinite without any), and the distance below which they push, m.
         """
 
     def summarize(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[int, int, float, float]:
         """
-        Numbers of contacts and of clusters, the least distance (m, infinite without contacts) and what the query took (s), of the tool in a state (13,).
+        Numbers of contacts and of clusters, the least distance (m, infinite without contacts) and the time of the query (s), for the tool in a state (13,).
         """
 
     def handle_slopes(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
         """
-        `handle_slopes` (72,) of the coupling, and the contacts with other wrench models, of the arguments of `step_tool`.
+        `handle_slopes` (72,) of the coupling and of the contacts plus other wrench models, for the arguments of `step_tool`.
         """
 
     def __deepcopy__(self, arg: object, /) -> ContactChain: ...
@@ -2563,7 +2567,7 @@ class ContactChain(SceneTracker):
 
 def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], nhat_BA_W: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCa: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCb: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], object_index: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]) -> ContactSet:
     """
-    Contacts that another library found, for the laws of this one. They have no extent and no features: what needs to know how a contact moves (derivatives, force shading, ticks without a query) refuses them with a ValueError.
+    Contacts that another library found, for the laws of this one. They have no extent and no features: derivatives, force shading and ticks without a query, which need to know how a contact moves, refuse them with a ValueError.
 
     Args:
         distance: (n,) signed distances, m.
@@ -2577,5 +2581,5 @@ def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), 
 
 def make_witness_override() -> Callable[[object], list]:
     """
-    Returns the `DoGetWitnessFunctions` of a system without witness functions. It is a built-in function: pybind11 takes one for none of Python, keeps in mind that the class overrides nothing, and asks no more.
+    Returns the `DoGetWitnessFunctions` of a system without witness functions. It is a built-in function, which pybind11 does not take for an override in Python: it remembers that the class has none, and does not look again.
     """

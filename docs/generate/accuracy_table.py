@@ -1,4 +1,4 @@
-"""Tabulates what accuracy costs in some scenes, and what budgets they hold.
+"""Tabulates what accuracy costs in some scenes.
 
 python docs/generate/accuracy_table.py --write
 
@@ -11,7 +11,6 @@ python docs/generate/accuracy_table.py --write --errors KNOB ...
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -20,12 +19,6 @@ from page_parts import find_part, make_parser, replace_part, to_markdown
 from page_stamp import amend_page, write_page
 
 from drake_haptics.cli.console import progress_bar
-from drake_haptics.evaluation.accuracy.budget import (
-    BudgetChoice,
-    choose_setting,
-    describe_sacrifices,
-)
-from drake_haptics.evaluation.accuracy.costs import measure_p99
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, Row
 from drake_haptics.evaluation.accuracy.knobs import list_settings, make_reference
 from drake_haptics.evaluation.accuracy.peers.run import add_peers
@@ -58,13 +51,7 @@ _DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = _DOCS / "verification" / "accuracy.md"
 ADVICE_PAGE = _DOCS / "accuracy.md"
 SCENES = ("cup_spoon", "rubbed_sphere")
-BUDGET_SCENES = (*SCENES, "torus_peg")
-_BUDGET_RUNS = 3
-# Of the scene's own p99: a budget that costs something.
-_BUDGET_SHARE = 0.8
-_BUDGET_STEP_US = 10.0
-COLUMNS_NAME, BUDGETS_NAME, ADVICE_NAME = "columns", "budgets", "advice"
-BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")
+COLUMNS_NAME, ADVICE_NAME = "columns", "advice"
 # Knob, setting, and times of tick and core are before the errors; energy is the last.
 ERRORS = slice(4, 8)
 _DPI = 90
@@ -106,24 +93,6 @@ def make_advice(studies: dict[str, AccuracyStudy]) -> str:
         f"- **{name}**: {' '.join(describe_verdict(study))}\n"
         for name, study in studies.items()
     )
-
-
-def make_budgets(choices: dict[str, BudgetChoice]) -> str:
-    """Returns the concessions for budgets, a row for each scene."""
-    rows = []
-    for name, choice in choices.items():
-        scene = load_scene(find_scene(name))
-        lost = describe_sacrifices(choice, scene) or ["nothing"]
-        rows.append(
-            [
-                name,
-                f"{choice.budget_us:g}",
-                f"{choice.trial.middle_us:.0f}",
-                f"{choice.trial.scene_us:.0f}",
-                "; ".join(lost) if choice.holds else "not reachable",
-            ]
-        )
-    return to_markdown([BUDGET_HEADINGS, *rows])
 
 
 def with_parts(page: str, parts: dict[str, str]) -> str:
@@ -177,37 +146,6 @@ def with_errors(page: str, name: str, errors: dict[tuple[str, str], list[str]]) 
     return page[: span.start] + "\n".join(lines) + page[span.stop :]
 
 
-def hold_budget(name: str, study: AccuracyStudy | None) -> BudgetChoice:
-    """Holds a budget of four fifths of a scene's own time.
-
-    Args:
-        name: Name of the scene.
-        study: Study of the scene; a quick one is made where not given.
-    """
-    scene = load_scene(find_scene(name))
-    with progress_bar() as show:
-
-        def make_study(settings: list[Setting] | None) -> AccuracyStudy:
-            if settings is None and study is not None:
-                return study
-            return run_accuracy_study(
-                scene, name, settings=settings, quick=study is None, progress=show
-            )
-
-        return choose_setting(
-            scene,
-            _choose_budget(measure_p99(scene)),
-            make_study=make_study,
-            measure_p99=measure_p99,
-            progress=show,
-            runs=_BUDGET_RUNS,
-        )
-
-
-def _choose_budget(p99_us: float) -> float:
-    return math.floor(_BUDGET_SHARE * p99_us / _BUDGET_STEP_US) * _BUDGET_STEP_US
-
-
 def _make_label(row: Row) -> str:
     """Returns a setting; bold is the scene's own, † another model."""
     if row.is_scene:
@@ -245,11 +183,9 @@ def main() -> None:
     if arguments.store is not None:
         arguments.store.mkdir(parents=True, exist_ok=True)
     studies = {name: measure_prices(name, arguments.store) for name in SCENES}
-    choices = {name: hold_budget(name, studies.get(name)) for name in BUDGET_SCENES}
     parts = {
         COLUMNS_NAME: make_columns(),
         **{name: make_prices(study) for name, study in studies.items()},
-        BUDGETS_NAME: make_budgets(choices),
     }
     print("\n".join(parts.values()))
     if arguments.write:

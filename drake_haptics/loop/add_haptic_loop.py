@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import asdict, replace
 
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, OutputPort
 
 from drake_haptics import _core
+from drake_haptics._core import CouplingGains
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.contact import (
     add_contact_systems,
@@ -38,13 +40,6 @@ from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.tool.handle_model import HandleModel
 from drake_haptics.systems.tool.haptic_tool import HapticTool
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
-
-if TYPE_CHECKING:
-    pass
-import math
-from dataclasses import asdict, replace
-
-from drake_haptics._core import CouplingGains
 
 # Effects that push the tool, each through the input of its name.
 _FORCES = ("friction", "braking", "gravity")

@@ -10,9 +10,6 @@ from accuracy_samples import make_study
 from accuracy_table import (
     ADVICE_NAME,
     ADVICE_PAGE,
-    BUDGET_HEADINGS,
-    BUDGET_SCENES,
-    BUDGETS_NAME,
     COLUMNS_NAME,
     ERRORS,
     PAGE,
@@ -96,12 +93,6 @@ def test_the_advice_is_that_of_the_price_list(name: str) -> None:
     lines = read_part(ADVICE, ADVICE_NAME).splitlines()
     [advice] = [x for x in lines if x.startswith(f"- **{name}**: ")]
     assert read_part(TEXT, name).strip().startswith(advice.partition(": ")[2])
-
-
-def test_every_scene_has_a_budget() -> None:
-    head, *rows = rows_of(TEXT, BUDGETS_NAME)
-    assert head == list(BUDGET_HEADINGS)
-    assert [row[0] for row in rows] == list(BUDGET_SCENES)
 
 
 def test_the_columns_are_those_of_today() -> None:

@@ -19,6 +19,14 @@ MORE_CODE = ("tests", "docs")
 LINKS = {"drake_haptics/systems", "drake_haptics/models"}
 # A first line says what a module is or does; an indirect question says neither.
 QUESTION = re.compile(r"(?:What|Where|Whether|How|Who|Whose|Which|Why|When)\b")
+# An entry of an argument or attribute that begins with one of these is no phrase of
+# its own: "scene: Of the tool."
+FRAGMENT = re.compile(
+    r"(?:Of|Whose|As|What|Where|For|To|With|In|On|At|By|From|Which|That|Those|Than"
+    r"|Each|The same|If|Until|Between|Along|How|Is)\b"
+)
+_SECTION = re.compile(r"^( *)(?:Args|Attributes):\n((?:\1 +\S.*\n|\n)*)", re.M)
+_ENTRY = re.compile(r"^( *)\*{0,2}\w+: (.*)", re.M)
 _VERBS = (
     "discret|equal|final|general|initial|linear|local|maxim|minim|normal|optim|organ"
     "|parametr|recogn|serial|special|stabil|summar|synchron|util|vector|visual"
@@ -75,6 +83,15 @@ def find_python_prose(source: str) -> Iterator[tuple[int, str]]:
             yield token.start[0], token.string
 
 
+def find_entries(source: str) -> Iterator[str]:
+    """Yields the first line of each argument or attribute that a file documents."""
+    for _, prose in find_python_prose(source):
+        for section in _SECTION.finditer(f"{prose}\n"):
+            entries = list(_ENTRY.finditer(section[2]))
+            indent = min((len(entry[1]) for entry in entries), default=0)
+            yield from (entry[2] for entry in entries if len(entry[1]) == indent)
+
+
 def find_comments(source: str) -> Iterator[tuple[int, str]]:
     """Yields each comment of a C, C++, JavaScript or CSS file, with its first line."""
     for match in _COMMENT.finditer(source):
@@ -121,6 +138,25 @@ def test_the_first_line_of_a_module_says_what_it_is_or_does():
     assert len(lines) > 250
     questions = [f"{p}: {line}" for p, line in lines.items() if QUESTION.match(line)]
     assert questions == []
+
+
+def test_arguments_and_attributes_are_described_by_noun_phrases():
+    entries = [
+        (path.relative_to(ROOT).as_posix(), entry)
+        for path in list_files(".py")
+        for entry in find_entries(path.read_text(encoding="utf-8"))
+    ]
+    assert len(entries) > 2000
+    assert [f"{p}: {e}" for p, e in entries if FRAGMENT.match(e)] == []
+
+
+def test_entries_are_those_of_arguments_and_attributes():
+    source = (
+        'def f(a, b):\n    """Does: nothing.\n\n    Args:\n        a: Of the tool,\n'
+        "            note: two lines.\n        **b: Name of it.\n\n    Raises:\n"
+        '        ValueError: Of no use.\n    """\n'
+    )
+    assert list(find_entries(source)) == ["Of the tool,", "Name of it."]
 
 
 @pytest.mark.parametrize("suffixes", [(".py",), (".cc", ".h", ".c", ".js", ".css")])

@@ -15,26 +15,28 @@
 namespace drake_haptics {
 namespace {
 
-// Stiffness of a row that holds the skin, N/m: hard, for a hand's force takes a
-// hundred-millionth of a meter off it.
+// Stiffness of a row that holds the skin, N/m: a hand's force of 10 N takes 10
+// nm off it.
 constexpr double kHard = 1e9;
-// Of one that leads back into the skin, N/m. Its force is limited to what it
-// has at its speed in one tick: two walls that leave less room than two skins
-// share it.
+// Stiffness of a row that leads back into the skin, N/m. Its force is limited
+// to that of the way that it leads back in one tick, so that two walls that
+// leave less room than two skins share the room.
 constexpr double kBack = 1e7;
-// What all pieces in overlap push with together, N.
+// Largest sum of the forces of all pieces in overlap, N.
 constexpr double kMostOutward = 3;
-// The motion that rows look ahead, m: so much at least, so much at most, and in
-// between twice the motion without contact and a little.
+// Rows are found for twice the tool's motion without contact and a little more,
+// between these bounds, m.
 constexpr double kLeastReach = 1e-4, kMostReach = 1e-3, kMoreReach = 2e-5;
 constexpr int kMaxSubsteps = 6;
-// A motion of so much of the skin in a tick turns planes; and what of the skin
-// rounding may cost that, and then the tool's own turning.
+// Planes are turned in a tick that moves the tool by more than this share of
+// the skin. Then rounding may take kRounding of the skin, and the rotation of
+// the tool kTurningLoss.
 constexpr double kTurningMotion = 0.05;
 constexpr double kRounding = 1e-6, kTurningLoss = 1e-3;
 constexpr int kMaxTurns = 3;
-// Friction is found again until its wrench changes by no more than this, N and
-// N·m, or so often: at first by tangents, then by secants.
+// Friction is solved for again until its wrench changes by no more than this, N
+// and N·m, or for so many rounds: the first ones by tangents, the rest by
+// secants.
 constexpr double kFrictionChange = 1e-7;
 constexpr int kTangentRounds = 5, kMaxFrictionRounds = 12;
 
@@ -58,8 +60,8 @@ Pose PoseOfVector(const PoseVector& q) {
   return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
 }
 
-// A stiffness that is the slope of a potential. That of a spring and damper
-// that yield along different directions is not.
+// The symmetric part of a stiffness, which is the slope of a potential. Springs
+// and dampers that yield along different directions have another part.
 Mat6 Symmetric(const Mat6& K) {
   if (K.isApprox(K.transpose(), 1e-12)) return K;
   bool changed = false;
@@ -103,7 +105,7 @@ void ConstraintStepper::SetObjectPose(int i, const Pose& X_WO,
   V_WO_[i] = V_WO;
 }
 
-// How an object's point moves in the tick, m.
+// Motion of an object's point in the tick, m.
 Vec3 ConstraintStepper::ObjectMotionAt(int i, const Vec3& p_WC) const {
   const Vec6& V = V_WO_[i];
   return settings_.period *
@@ -156,8 +158,8 @@ Pose ConstraintStepper::NextPoseOf(int object) const {
   return Moved(rows_.X_WO(object), settings_.period * V_WO_[object]);
 }
 
-// Whether pairs with planes that were turned keep their skin at the next pose,
-// or what is left of it.
+// Whether pairs with turned planes keep at the next pose the skin that they
+// had.
 bool ConstraintStepper::AreTurnedPiecesApart(const Pose& X_next) const {
   for (std::size_t k = 0; k < is_turned_.size(); ++k) {
     if (is_turned_[k] == 0) continue;
@@ -172,9 +174,10 @@ bool ConstraintStepper::AreTurnedPiecesApart(const Pose& X_next) const {
   return true;
 }
 
-// Turns the planes of the pairs that push: at first by where the tool comes if
-// it coasts, for what a plane wrongly forbids bends the motion that was found
-// with it; then by that. Returns whether any was turned.
+// Turns the planes of the pairs that push: first toward the pose to which the
+// tool would coast, because the motion that was solved for is bent by planes
+// that forbid too much; then toward the solved motion. Returns whether any was
+// turned.
 bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
                                    const Vec6& motion, Follower* follower) {
   const double distance = rows_.MotionOf(X_WT, motion);
@@ -193,7 +196,7 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
         !(distance > kTurningMotion * skin)) {
       continue;
     }
-    // No nearer than what is nearest: nothing of the skin is given up.
+    // No nearer than the nearest pair, so that no skin is given up.
     const double least = std::min(plane.least, skin) - kRounding * skin;
     const bool is_again = is_turned_[k] != 0;
     if (rows_.TurnPlane(static_cast<int>(k), is_again ? X_next : X_coasted,
@@ -208,7 +211,7 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
   return is_any;
 }
 
-// The rows as friction sees them; what they push with is left open.
+// Writes the rows for friction, without their normal forces.
 void ConstraintStepper::WriteRubbing(const Pose& X_WT) {
   rubbing_.clear();
   for (const ConstraintRow& row : rows_.rows()) {
@@ -219,8 +222,8 @@ void ConstraintStepper::WriteRubbing(const Pose& X_WT) {
   }
 }
 
-// Solves the problem of the springs, with friction by the normal forces of the
-// last solution, until that is what they say.
+// Solves the problem of the springs, with friction from the normal forces of
+// the last solution, until both agree.
 ConstraintSolution ConstraintStepper::Solve(const Pose& X_WT, const Vec6& start,
                                             ConstraintStepResult* result) {
   ConstraintSolution solution =
@@ -268,7 +271,7 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
     rows_.UpdateRows();
     WriteSprings();
     solution = Solve(X_WT, solution.motion, result);
-    // What a plane proves holds for translations.
+    // A plane's proof holds for translations only.
     if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
       rows_.RestorePlanes();
       WriteSprings();
@@ -289,7 +292,7 @@ void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
   try {
     StepFrom(state, q_WH, V_WH, F_applied, result);
   } catch (...) {
-    // There was no memory: what is half learnt must not be trusted.
+    // Out of memory: what was stored half must not be trusted.
     Reset();
     throw;
   }

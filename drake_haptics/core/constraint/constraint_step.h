@@ -20,26 +20,26 @@ namespace drake_haptics {
 struct ConstraintStepResult {
   ToolState next;                        ///< of the tool, at the tick's end
   Vec6 F_Ho_W_commanded = Vec6::Zero();  ///< at the tick's beginning
-  /// The rows that push, at the pose where they were taken, and what each
-  /// pushes with, N.
+  /// The rows that push, at the pose where they were found, and the force of
+  /// each, N.
   ContactSet contacts;
   std::vector<double> force;
-  /// Of the contacts, in place of clusters; without friction that is nothing.
+  /// Friction of the contacts; empty without friction.
   FrictionStep friction;
   /// On each object at the origin of its frame, in W: [torque; force].
   std::vector<Vec6> F_Oo_W;
   /// Slope of the step's forces by the tool's motion [rad; m] in the tick,
   /// A = M/h² + B/h + K + Σ k a aᵀ over the rows that push, and the slope of
-  /// friction. What adds dF to the
-  /// wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
+  /// friction. A change dF of the wrench on the tool changes its motion by
+  /// A⁻¹ dF and V_WT by A⁻¹ dF / h.
   Mat6 hessian = Mat6::Zero();
-  /// The part of it that is of the rows, Σ k a aᵀ.
+  /// The rows' part of the Hessian, Σ k a aᵀ.
   Mat6 contact_stiffness = Mat6::Zero();
   int num_rows = 0;        ///< of the last sub-step
   int num_substeps = 0;    ///< at least 1
   int num_iterations = 0;  ///< of Newton's method, all sub-steps together
-  /// Whether a bound on iterations or sub-steps ended the tick: then the tool
-  /// has gone less far than it should.
+  /// Whether a bound on iterations or sub-steps ended the tick, so that the
+  /// tool moved less than it should.
   bool is_bounded = false;
   /// Smallest distance of the tool's pieces to the objects' at the tick's
   /// beginning, m; infinite where none is within reach.
@@ -127,7 +127,7 @@ class ConstraintStepper {
   void Reset();
 
  private:
-  // Is told what a tick does, step by step.
+  // Is notified of each step of a tick.
   class Follower {
    public:
     // A problem was solved, with planes and springs as they are.

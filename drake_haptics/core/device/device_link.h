@@ -59,7 +59,7 @@ class DeviceLink {
   void Tick(double now);
 
   /// Requests a wrench, which lets the device be enabled from now on.
-  void QueryPair() { asked_ = true; }
+  void RequestWrench() { asked_ = true; }
 
   /// Recovers from a fault: disabled until the device is idle.
   void Recover();

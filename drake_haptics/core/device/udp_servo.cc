@@ -147,7 +147,7 @@ void UdpServo::TakeRequests() {
     take(&wrench.B);
     wrench.published_at = *in;
     law_.Adopt(wrench);
-    link_.QueryPair();
+    link_.RequestWrench();
   }
   if (recover_.exchange(false)) link_.Recover();
 }

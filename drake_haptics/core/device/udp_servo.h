@@ -8,7 +8,7 @@
 #include <string>
 
 #include "device/device_link.h"
-#include "device/latency_histogram.h"
+#include "device/lateness_histogram.h"
 #include "device/realtime.h"
 #include "device/seqlock.h"
 #include "device/servo_law.h"

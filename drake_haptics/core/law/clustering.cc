@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "base/require.h"
 #include "base/union_find.h"
@@ -94,9 +93,7 @@ ClusterOf<T> Represent(const Sums<T>& sums, double tolerance) {
 template <typename T>
 void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
                      double tolerance, ClusterSetOf<T>* out) {
-  if (!std::isfinite(delta) || !(delta > 0)) {
-    throw std::invalid_argument("delta must be finite and above 0 m");
-  }
+  RequirePositive(delta, "delta");
   RequireNotNegative(tolerance, "tolerance");
   out->label.assign(contacts.size(), -1);
   std::vector<Placed> placed;

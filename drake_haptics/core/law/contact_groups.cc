@@ -21,7 +21,7 @@ Key KeyOf(const GroupedContact& contact) {
   Key key{contact.flushness > 0, static_cast<std::int32_t>(std::floor(
                                      std::log(contact.depth) / kDepthCell))};
   for (int k = 0; k < 3; ++k) {
-    key[1 + k] = static_cast<std::int32_t>(
+    key[2 + k] = static_cast<std::int32_t>(
         std::lround(contact.nhat_BA_W[k] / kTurnCell));
   }
   return key;

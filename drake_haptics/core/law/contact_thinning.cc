@@ -1,13 +1,12 @@
 #include "law/contact_thinning.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
 #include "base/autodiff.h"
+#include "base/require.h"
 
 namespace drake_haptics {
 namespace {
@@ -27,9 +26,7 @@ bool StandsFor(const ContactOf<T>& deep, const ContactOf<T>& other,
 template <typename T>
 void ThinContacts(const std::vector<ContactOf<T>>& contacts, double cell,
                   std::vector<ContactOf<T>>* out) {
-  if (!(cell >= 0) || !std::isfinite(cell)) {
-    throw std::invalid_argument("cell must be finite and at least 0 m");
-  }
+  RequireNotNegative(cell, "cell");
   std::vector<std::size_t> order(contacts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

@@ -1,16 +1,17 @@
 #include "law/friction_state.h"
 
+#include <cmath>
 #include <limits>
 
 namespace drake_haptics {
 namespace {
 
 // Index that a number of the state stands for, or -1. Numerical differentiation
-// may have moved the number a little.
+// may have moved the number a little to either side.
 int ToObject(double number) {
-  const bool is_index =
-      number > -1 && number <= std::numeric_limits<int>::max();
-  return is_index ? static_cast<int>(number) : -1;
+  const double index = std::round(number);
+  const bool is_index = index >= 0 && index <= std::numeric_limits<int>::max();
+  return is_index ? static_cast<int>(index) : -1;
 }
 
 }  // namespace

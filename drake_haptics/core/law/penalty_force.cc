@@ -2,21 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <string>
 
+#include "base/require.h"
 #include "law/approach.h"
 
 namespace drake_haptics {
 namespace {
-
-void RequireGain(double value, const char* name) {
-  if (!std::isfinite(value) || value < 0) {
-    throw std::invalid_argument(std::string(name) +
-                                " must be finite and at least 0");
-  }
-}
 
 template <typename T>
 using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
@@ -87,8 +79,8 @@ Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
 }  // namespace
 
 void RequireMaterial(const ContactMaterial& material) {
-  RequireGain(material.stiffness, "stiffness");
-  RequireGain(material.damping, "damping");
+  RequireNotNegative(material.stiffness, "stiffness");
+  RequireNotNegative(material.damping, "damping");
 }
 
 template <typename T>

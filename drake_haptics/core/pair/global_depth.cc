@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/motion.h"
 #include "pair/enclosing_polytope.h"
 #include "pair/warm_facet.h"
 #include "pair/witness.h"
@@ -20,7 +21,7 @@ constexpr double kCoplanarShare = 1e-11;
 // one, as a share of the size.
 constexpr double kKeepShare = 1e-9;
 // Bounds on the raises of a new and of a kept surface. Growing a kept surface
-// anew is cheaper than raising more than a share of its triangles.
+// again is cheaper than raising more than a share of its triangles.
 constexpr int kMaxRaises = 4096;
 constexpr int kKeptRaises = 48;
 constexpr int kKeptTrianglesPerRaise = 4;
@@ -35,17 +36,10 @@ constexpr double kSimplifyClearance = 1.05;
 // Bound on the displacement of any point of A ⊖ B from one pose to the other,
 // m, seen from the larger body.
 double MotionBound(const PosedPair& pair, const Pose& last) {
-  const Pose& now = pair.X_AB;
-  const double turn = (now.R - last.R).norm() / std::sqrt(2.0);
-  if (pair.B.radius <= pair.A.radius) {
-    const Vec3& center = pair.B.centroid;
-    return (now * center - last * center).norm() + turn * pair.B.radius;
-  }
-  const Vec3& center = pair.A.centroid;
-  return (now.R.transpose() * (center - now.p) -
-          last.R.transpose() * (center - last.p))
-             .norm() +
-         turn * pair.A.radius;
+  const auto& [A, B, X_AB] = pair;
+  return B.radius <= A.radius
+             ? Motion(last, X_AB).Bound(B.centroid, B.radius)
+             : Motion(last.inverse(), X_AB.inverse()).Bound(A.centroid, A.radius);
 }
 
 class Search {

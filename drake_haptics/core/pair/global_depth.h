@@ -65,7 +65,7 @@ struct GlobalDepthState {
 /// Where S is nearer than the best facet known, the support along that
 /// direction raises S or leads to a shallower facet (the expansion of van den
 /// Bergen, 2001, on a surface that need not stay convex). The number of raises
-/// is bounded; if they fail, S is grown anew.
+/// is bounded; if they fail, S is grown again.
 ///
 /// The last facet stays the answer while it is a facet and its depth is within
 /// a billionth of the size of the least one, so that ties do not chatter; h is

@@ -15,9 +15,7 @@ from drake_haptics.simulation.run import RunError, run
 # Account of the whole loop; all other accounts are its parts.
 _WHOLE = "device"
 # The linearization's own message is about systems, this one about the scene.
-_TWO_RATES = (
-    "contacts are looked for at another rate than the tick's, and a linear map has one"
-)
+_TWO_RATES = "the query has another rate than the loop, and a linear map has one rate"
 # Stiffnesses are searched within this factor of the scene's, to this relative error.
 _RANGE = 1e4
 _TOLERANCE = 1e-2

@@ -118,9 +118,15 @@ def _run_in_parts(
 
 
 def scale_times(times: TickTimes, ours: TickTimes, other: TickTimes) -> TickTimes:
-    """Returns times multiplied by the ratio of other times to ours."""
-    factors = np.array(astuple(other)[1:]) / np.array(astuple(ours)[1:])
-    return TickTimes(other.ticks, *(factors * astuple(times)[1:]).tolist())
+    """Returns times multiplied by the ratio of others to ours.
+
+    If ours were shorter than the clock shows, the others themselves.
+    """
+    times_us, ours_us, other_us = (
+        np.array(astuple(each)[1:]) for each in (times, ours, other)
+    )
+    ratio = np.divide(times_us, ours_us, out=np.ones(3), where=ours_us > 0.0)
+    return TickTimes(other.ticks, *(ratio * other_us).tolist())
 
 
 def combine(repeats: Sequence[TickTimes]) -> TickTimes:
@@ -167,36 +173,48 @@ def make_native_part(haptic: HapticDiagram) -> NativePart:
     )
 
 
-def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
-    """Times query, clusters and wrench of a recorded motion, without Python.
+def time_native(
+    parts: Sequence[tuple[NativePart, RecordedMotion]],
+) -> list[TickTimes]:
+    """Times query, clusters and wrench of recorded motions, without Python, in turns.
 
-    The query is timed inside the core; extrapolation, clusters and wrench are timed by
-    how much longer a call takes than one without contacts. A tick's time is that of the
-    middle of several passes, so that the percentiles are free of disturbances.
+    A tick's time is that of the middle of several passes, so that the percentiles are
+    free of disturbances.
 
     Args:
-        part: Queries to the core.
-        motion: Motion of the tool.
+        parts: Queries to the core, each with the motion of its tool.
+    """
+    passes: list[list[np.ndarray]] = [[] for _ in parts]
+    begin_s = time.perf_counter()
+    while len(passes[0]) < _PASSES and (
+        time.perf_counter() < begin_s + len(parts) * _LONGEST_S
+    ):
+        for part, done in zip(parts, passes, strict=True):
+            done.append(_time_pass(*part))
+    return [TickTimes.of(np.maximum(typical(np.array(x)), 0.0)) for x in passes]
+
+
+def _time_pass(part: NativePart, motion: RecordedMotion) -> np.ndarray:
+    """Returns the times (n,) of the ticks of a motion, s.
+
+    The query is timed inside the core; extrapolation, clusters and wrench are timed by
+    how much longer a call takes than one without contacts.
     """
     far = np.array([1.0, 0.0, 0.0, 0.0, _FAR_M, 0.0, 0.0])
     nothing, _ = part.make_search().look(far)
-    cluster = CallTimer(part.make_clustering(), (nothing,))
     none = part.make_clustering()(nothing)
+    search = part.make_search()
+    carry = CallTimer(search.carry, (nothing, far))
+    cluster = CallTimer(part.make_clustering(), (nothing,))
     force = CallTimer(part.make_force(), (none, far[4:], np.zeros(6)))
-    passes: list[np.ndarray] = []
-    begin_s = time.perf_counter()
-    while len(passes) < _PASSES and time.perf_counter() < begin_s + _LONGEST_S:
-        passes.append(np.zeros(len(motion)))
-        search = part.make_search()
-        carry = CallTimer(search.carry, (nothing, far))
-        for tick, X_WT in enumerate(motion.X_WT):
-            found, query_s = search.look(X_WT)
-            contacts, carry_s = carry.call((found, X_WT))
-            clusters, cluster_s = cluster.call((contacts,))
-            _, force_s = force.call((clusters, X_WT[4:], motion.V_WT[tick]))
-            # No call is faster than one without contacts, but for the clock's ticks.
-            passes[-1][tick] = query_s + carry_s + cluster_s + force_s
-    return TickTimes.of(np.maximum(typical(np.array(passes)), 0.0))
+    seconds = np.zeros(len(motion))
+    for tick, X_WT in enumerate(motion.X_WT):
+        found, query_s = search.look(X_WT)
+        contacts, carry_s = carry.call((found, X_WT))
+        clusters, cluster_s = cluster.call((contacts,))
+        _, force_s = force.call((clusters, X_WT[4:], motion.V_WT[tick]))
+        seconds[tick] = query_s + carry_s + cluster_s + force_s
+    return seconds
 
 
 def measure_p99(scene: Scene) -> float:

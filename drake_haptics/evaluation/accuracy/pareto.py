@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
@@ -54,23 +54,19 @@ def get_force_error_N(row: Row) -> float:
     return max(row.errors.force_rms_N, ERROR_FLOOR_N)
 
 
-def find_front(
-    study: AccuracyStudy, get_time_us: Callable[[Row], float] = get_native_us
-) -> Front:
-    """Finds the front of the rows that were measured.
+def find_front(study: AccuracyStudy) -> Front:
+    """Finds the front of the rows that were measured, by their time inside the core.
 
     Args:
         study: Study to search. Rows that were not measured, or whose figure is not an
             error (see `is_comparable`), are left out.
-        get_time_us: Function that returns the time of a row, µs. Defaults to the median
-            inside the core.
     """
     rows = [
         row
         for row in study.rows
         if row.cost and row.errors and (row.is_scene or is_comparable(row.setting))
     ]
-    points = [(get_time_us(row), get_force_error_N(row)) for row in rows]
+    points = [(get_native_us(row), get_force_error_N(row)) for row in rows]
     front = find_front_points(points)
     ends = [points[i] for i in front]
     bend = find_bend(ends)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import cycle
 from typing import TYPE_CHECKING
@@ -15,7 +15,6 @@ from drake_haptics.evaluation.accuracy.pareto import (
     find_front,
     get_force_error_N,
     get_native_us,
-    get_tick_us,
 )
 from drake_haptics.evaluation.accuracy.report import (
     describe_machine,
@@ -44,68 +43,57 @@ _MARGIN_ERROR = 2.0
 def draw_study(study: AccuracyStudy) -> Figure:
     """Draws a study on a figure of its own, which no window shows.
 
-    The left axes show time inside the core, which other libraries have too, and the
-    right axes that of the whole tick. Rows that were not measured are left out.
+    Time is that inside the core, which other libraries have too. Rows that were not
+    measured are left out.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_SIZE_INCH, layout="constrained")
-    left, right = figure.subplots(
-        1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 2]}
-    )
-    _draw_rows(study, left, get_native_us)
-    _draw_peers(study.peers, left)
-    _draw_rows(study, right, get_tick_us)
-    left.set_ylabel(f"force error, rms, N   (below {1e3 * ERROR_FLOOR_N:g} mN: exact)")
-    left.set_xlabel("contact inside the core, median of a tick, µs")
-    right.set_xlabel("whole tick, median, µs")
-    scale_times(left)
-    scale_times(right)
-    _limit_errors(left)
+    axes = figure.subplots()
+    _draw_rows(study, axes)
+    _draw_peers(study.peers, axes)
+    axes.set_ylabel(f"force error, rms, N   (below {1e3 * ERROR_FLOOR_N:g} mN: exact)")
+    axes.set_xlabel("contact inside the core, median of a tick, µs")
+    scale_times(axes)
+    _limit_errors(axes)
     figure.suptitle(f"What accuracy costs in {study.scene}: lower left is better")
     add_legends(
         figure,
-        left,
+        axes,
         [_name_peer(peer) for peer in study.peers],
         f"Error against {study.reference.label}, at the same {study.ticks} poses. Gray,"
         " and left out of the front: no error, but another model or loop."
         f" {describe_machine(study)}",
     )
     figure.draw_without_rendering()  # fixes the layout, which labels are placed in
-    for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
-        front = find_front(study, get_time_us)
-        marked = [
-            row
-            for row in front.knees or [front.bend]
-            if row is not None and not row.is_scene
-        ]
-        named = {row.setting.knob for row in marked}
-        knobs = [knob for knob in _find_knobs(study) if knob.name not in named]
-        label_points(
-            axes,
-            [
-                *(
-                    _label_setting(row, row in front.knees, get_time_us)
-                    for row in marked
-                ),
-                *(_label_knob(knob, axes, get_time_us) for knob in knobs),
-            ],
-        )
+    front = find_front(study)
+    marked = [
+        row
+        for row in front.knees or [front.bend]
+        if row is not None and not row.is_scene
+    ]
+    named = {row.setting.knob for row in marked}
+    knobs = [knob for knob in _find_knobs(study) if knob.name not in named]
+    label_points(
+        axes,
+        [
+            *(_label_setting(row, row in front.knees) for row in marked),
+            *(_label_knob(knob, axes) for knob in knobs),
+        ],
+    )
     return figure
 
 
-def _label_setting(
-    row: Row, is_knee: bool, get_time_us: Callable[[Row], float]
-) -> Label:
+def _label_setting(row: Row, is_knee: bool) -> Label:
     """Returns the label of a setting that is worth a look."""
     words = _describe_setting(row, is_knee)
     error_N = get_force_error_N(row)
-    return Label(get_time_us(row), error_N, words, FRONT, is_framed=True)
+    return Label(get_native_us(row), error_N, words, FRONT, is_framed=True)
 
 
-def _label_knob(knob: _Knob, axes: Axes, get_time_us: Callable[[Row], float]) -> Label:
+def _label_knob(knob: _Knob, axes: Axes) -> Label:
     """Returns the label of a knob, where its line is farthest from the scene."""
-    points = [(get_time_us(row), get_force_error_N(row)) for row in knob.rows]
+    points = [(get_native_us(row), get_force_error_N(row)) for row in knob.rows]
     pixels = axes.transData.transform(points)
     own = [pixels[i] for i, row in enumerate(knob.rows) if row.is_scene]
     far = [min((math.dist(x, scene) for scene in own), default=0.0) for x in pixels]
@@ -146,13 +134,11 @@ def _find_knobs(study: AccuracyStudy) -> list[_Knob]:
     return knobs
 
 
-def _draw_rows(
-    study: AccuracyStudy, axes: Axes, get_time_us: Callable[[Row], float]
-) -> None:
+def _draw_rows(study: AccuracyStudy, axes: Axes) -> None:
     """Draws every row, the front behind them and the scene's own star above them."""
     axes.set_yscale("log")
     for knob in _find_knobs(study):
-        points = [(get_time_us(row), get_force_error_N(row)) for row in knob.rows]
+        points = [(get_native_us(row), get_force_error_N(row)) for row in knob.rows]
         axes.plot(
             *zip(*sorted(points), strict=True),
             knob.marker + ":",
@@ -162,9 +148,9 @@ def _draw_rows(
             markersize=7,
             zorder=3,
         )
-    front = find_front(study, get_time_us)
+    front = find_front(study)
     axes.step(
-        [get_time_us(row) for row in front.rows],
+        [get_native_us(row) for row in front.rows],
         [get_force_error_N(row) for row in front.rows],
         where="post",
         color=FRONT,
@@ -173,13 +159,13 @@ def _draw_rows(
         zorder=2,
     )
     for row in _take_reference(study):
-        axes.plot(get_time_us(row), get_force_error_N(row), "s", markersize=15,
+        axes.plot(get_native_us(row), get_force_error_N(row), "s", markersize=15,
                   markerfacecolor="none", markeredgecolor="black", label="reference",
                   zorder=4)  # fmt: skip
     for row in _take_scene(study):
         is_exact = get_force_error_N(row) == ERROR_FLOOR_N
         axes.plot(
-            get_time_us(row),
+            get_native_us(row),
             get_force_error_N(row),
             "*",
             markersize=20,

@@ -192,7 +192,7 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
 def describe_knees(study: AccuracyStudy) -> list[str]:
     """Describes each knee: its cost beside the scene, and the costs on either side."""
     # The front is over time inside the core, which noise disturbs least.
-    front = find_front(study, get_native_us)
+    front = find_front(study)
     scene = find_scene_row(study)
     sentences = []
     stops = [front.rows[0], *front.knees, front.rows[-1]] if front.rows else []
@@ -283,11 +283,7 @@ def _advise(study: AccuracyStudy, scene: Row) -> str:
             f"Take {name_setting(better)}, which is faster and"
             f" {'more' if is_more else 'as'} exact: {_describe_price(better)}."
         )
-    faster = [
-        knee
-        for knee in find_front(study, get_native_us).knees
-        if _is_faster(knee, scene)
-    ]
+    faster = [knee for knee in find_front(study).knees if _is_faster(knee, scene)]
     if not faster:
         return (
             "Leave the scene as it is: no setting worth its error saves"

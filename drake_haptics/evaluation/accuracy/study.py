@@ -132,9 +132,11 @@ class Measurement:
         return {"instructions": count_native(part, motion.X_WT, motion.V_WT)}
 
     def _measure_native(self, scene: Scene) -> dict[str, Any]:
-        haptic = cached_build(scene)
-        motion = self.motion.sample(haptic.period_s)
-        return asdict(time_native(make_native_part(haptic), motion))
+        loops = [cached_build(each) for each in (scene, self.scene)]
+        own, ours = time_native(
+            [(make_native_part(x), self.motion.sample(x.period_s)) for x in loops]
+        )
+        return {"own": asdict(own), "scene": asdict(ours)}
 
 
 def make_task(what: str, setting: Setting, **more: Any) -> Task:
@@ -190,36 +192,54 @@ def make_row(
     return Row(
         setting=setting,
         is_scene=is_scene,
-        cost=_make_cost(own, is_scene, _find_scene_times(done)),
+        cost=_make_cost(own, done, is_scene),
         errors=_make_errors(own["errors"]),
         pieces=_read_pieces(own["errors"]),
         failure_reason=reasons[0] if reasons else "",
     )
 
 
-def _find_scene_times(
-    done: Sequence[tuple[Task, Mapping[str, Any]]],
-) -> TickTimes:
-    """Returns the median times of the scene's ticks over its runs beside settings."""
-    runs = [result["scene"] for _, result in done if "scene" in result]
-    return combine([TickTimes(**times) for times in runs])
-
-
 def _make_cost(
-    own: Mapping[str, Sequence[Mapping[str, Any]]], is_scene: bool, scene: TickTimes
+    own: Mapping[str, Sequence[Mapping[str, Any]]],
+    done: Sequence[tuple[Task, Mapping[str, Any]]],
+    is_scene: bool,
 ) -> Cost | None:
     results = [
         own[what][0] for what in ("native", "ticks", "instructions") if own[what]
     ]
     if any("failure_reason" in result for result in results):
         return None
-    ticks, counts = own["ticks"][0], own["instructions"]
-    pair = (TickTimes(**ticks["scene"]), TickTimes(**ticks["own"]))
+    counts = own["instructions"]
     return Cost(
-        tick=scene if is_scene else scale_times(scene, *pair),
-        native=TickTimes(**own["native"][0]),
+        tick=_find_times("ticks", own["ticks"][0], done, is_scene),
+        native=_find_times("native", own["native"][0], done, is_scene),
         instructions=counts[0]["instructions"] if counts else None,
     )
+
+
+def _find_times(
+    what: str,
+    own: Mapping[str, Any],
+    done: Sequence[tuple[Task, Mapping[str, Any]]],
+    is_scene: bool,
+) -> TickTimes:
+    """Returns the times of a setting by its ratio to the scene that ran beside it.
+
+    Args:
+        what: Task that timed the setting, "native" or "ticks".
+        own: Result of the task.
+        done: All tasks of the study with their results.
+        is_scene: Whether the setting is the scene as it is.
+    """
+    beside = [
+        TickTimes(**result["scene"])
+        for task, result in done
+        if task["what"] == what and "scene" in result
+    ]
+    scene = combine(beside)
+    if is_scene:
+        return scene
+    return scale_times(scene, TickTimes(**own["scene"]), TickTimes(**own["own"]))
 
 
 def _make_errors(results: Sequence[Mapping[str, Any]]) -> Errors | None:

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "check.h"
-#include "device/latency_histogram.h"
+#include "device/lateness_histogram.h"
 #include "drake_haptics/wire.h"
 
 namespace drake_haptics {
@@ -100,7 +100,7 @@ void EnablesOnlyWhatIsIdleAndWanted() {
         idle_seen = gate == DH_IDLE;
         CHECK(link.Take(MakeState(++sequence, gate, boot), now));
       } else if (event == 7) {
-        link.QueryPair();
+        link.RequestWrench();
         asked = true;
       } else if (event == 8) {
         now += 0.06;

@@ -3,7 +3,7 @@
 
 #include "any_values.h"
 #include "check.h"
-#include "device/latency_histogram.h"
+#include "device/lateness_histogram.h"
 
 namespace drake_haptics {
 namespace {

@@ -81,5 +81,5 @@ def test_what_stays_is_in_its_order():
 
 @pytest.mark.parametrize("cell", [-1e-9, np.inf, np.nan])
 def test_a_cell_that_is_none_is_refused(cell):
-    with pytest.raises(ValueError, match="cell must be finite and at least 0 m"):
+    with pytest.raises(ValueError, match="cell must be finite and at least 0"):
         _core.thin_contacts(scatter(6, 3), cell)

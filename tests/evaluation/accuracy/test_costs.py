@@ -46,6 +46,9 @@ def test_times_are_scaled_as_the_scene_beside_them_ran():
     )
     own = TickTimes(5, 100.0, 400.0, 1800.0)
     assert scale_times(usual, disturbed, own) == TickTimes(5, 50.0, 100.0, 600.0)
+    # The clock shows nothing of half the scene's ticks.
+    rare = TickTimes(9, 0.0, 200.0, 300.0)
+    assert scale_times(rare, rare, own) == own
 
 
 def test_scenes_that_take_turns_run_as_alone():
@@ -108,8 +111,11 @@ def test_a_slower_loop_is_timed_at_its_own_ticks():
     np.testing.assert_array_equal(slow.X_WT, motion.X_WT[::4])
     fast = motion.sample(0.5e-3)
     np.testing.assert_array_equal(fast.X_WT, motion.X_WT)
-    times = time_native(make_native_part(cached_build(scene)), slow)
-    assert 0.0 <= times.median_us <= times.p99_us <= times.p99_9_us
+    part = make_native_part(cached_build(scene))
+    times = time_native([(part, slow), (part, fast)])
+    assert [each.ticks for each in times] == [25, 100]
+    for each in times:
+        assert 0.0 <= each.median_us <= each.p99_us <= each.p99_9_us
 
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")

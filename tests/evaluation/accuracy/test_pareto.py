@@ -13,7 +13,6 @@ from drake_haptics.evaluation.accuracy.pareto import (
     find_front_points,
     find_knee_points,
     get_native_us,
-    get_tick_us,
 )
 from drake_haptics.evaluation.accuracy.setting import Setting
 
@@ -105,13 +104,11 @@ def test_the_knees_of_stairs_are_inner_corners():
 
 def test_the_front_of_a_study_has_its_rows():
     study = make_study()
-    front = find_front(study, get_native_us)
+    front = find_front(study)
     assert [row.setting.label for row in front.rows] == [
         "single hull", "200", "as it is",
     ]  # fmt: skip
     assert [row.setting.label for row in front.knees] == ["200"]
-    ticks = find_front(study, get_tick_us)
-    assert ticks.rows[0].setting.label == "single hull"
 
 
 def test_errors_below_the_floor_are_alike():

@@ -50,13 +50,10 @@ def knobs_of(study):
             yield knob, measured
 
 
-def find_line(axes, rows, kind):
+def find_line(axes, rows):
     """The one line that has all points of a knob, and no other."""
     points = sorted(
-        [
-            getattr(row.cost, kind).median_us,
-            max(row.errors.force_rms_N, ERROR_FLOOR_N),
-        ]
+        [row.cost.native.median_us, max(row.errors.force_rms_N, ERROR_FLOOR_N)]
         for row in rows
     )
     lines = [line for line in axes.get_lines() if line.get_linestyle() == ":"]
@@ -76,16 +73,15 @@ def figure():
 
 
 def test_every_row_is_where_its_figures_are(figure):
-    left, right = figure.axes
-    for axes, kind in ((left, "native"), (right, "tick")):
-        for _, rows in knobs_of(STUDY):
-            assert find_line(axes, rows, kind)
-        ((x, y),) = lines_of(axes)["the scene as it is"].get_xydata()
-        assert (x, y) == ({"native": 24.0, "tick": 150.0}[kind], 0.004)
+    (axes,) = figure.axes
+    for _, rows in knobs_of(STUDY):
+        assert find_line(axes, rows)
+    ((x, y),) = lines_of(axes)["the scene as it is"].get_xydata()
+    assert (x, y) == (24.0, 0.004)
 
 
 def test_every_knob_looks_different(figure):
-    lines = [find_line(figure.axes[0], rows, "native") for _, rows in knobs_of(STUDY)]
+    lines = [find_line(figure.axes[0], rows) for _, rows in knobs_of(STUDY)]
     looks = {(line.get_marker(), line.get_color()) for line in lines}
     assert len(looks) == len(lines)
 
@@ -93,47 +89,44 @@ def test_every_knob_looks_different(figure):
 @pytest.mark.parametrize("name", STUDIES)
 def test_every_knob_is_named_at_a_point_of_its_own(name):
     figure = draw_study(STUDIES[name])
-    for axes, kind in zip(figure.axes, ("native", "tick"), strict=True):
-        notes = {note.get_text().partition("\n")[0]: note for note in axes.texts}
-        for knob, rows in knobs_of(STUDIES[name]):
-            note = notes.get(f"knee: {knob}") or notes[knob]
-            line = find_line(axes, rows, kind)
-            assert list(note.xy) in line.get_xydata().tolist()
-            if note.get_text().partition("\n")[0] == knob:
-                assert note.get_color() == line.get_color()
+    (axes,) = figure.axes
+    notes = {note.get_text().partition("\n")[0]: note for note in axes.texts}
+    for knob, rows in knobs_of(STUDIES[name]):
+        note = notes.get(f"knee: {knob}") or notes[knob]
+        line = find_line(axes, rows)
+        assert list(note.xy) in line.get_xydata().tolist()
+        if note.get_text().partition("\n")[0] == knob:
+            assert note.get_color() == line.get_color()
 
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_no_name_meets_another_or_hides_a_point(name):
     figure = draw_study(STUDIES[name])
-    for axes in figure.axes:
-        boxes, frame = note_boxes_of(figure, axes), axes.get_window_extent()
-        for box in boxes:
-            assert frame.x0 <= box.x0 and box.x1 <= frame.x1
-            assert frame.y0 <= box.y0 and box.y1 <= frame.y1
-        assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
-        for line in axes.get_lines():
-            if line.get_marker() != "None":
-                for x, y in axes.transData.transform(line.get_xydata()):
-                    assert not any(box.contains(x, y) for box in boxes)
+    (axes,) = figure.axes
+    boxes, frame = note_boxes_of(figure, axes), axes.get_window_extent()
+    for box in boxes:
+        assert frame.x0 <= box.x0 and box.x1 <= frame.x1
+        assert frame.y0 <= box.y0 and box.y1 <= frame.y1
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+    for line in axes.get_lines():
+        if line.get_marker() != "None":
+            for x, y in axes.transData.transform(line.get_xydata()):
+                assert not any(box.contains(x, y) for box in boxes)
 
 
-def test_peers_are_hollow_and_only_beside_the_core(figure):
-    left, right = map(lines_of, figure.axes)
-    peer = left["MuJoCo 3.3.0, its own contacts"]
+def test_peers_that_were_measured_are_hollow(figure):
+    lines = lines_of(figure.axes[0])
+    peer = lines["MuJoCo 3.3.0, its own contacts"]
     assert peer.get_markerfacecolor() == "none"
     assert peer.get_xydata().tolist() == [[30.0, 0.6]]
-    assert not any("MuJoCo" in label for label in right)
-    assert not any("coal" in label for label in left)
+    assert not any("coal" in label for label in lines)
 
 
-def test_axes_have_units_and_are_logarithmic_where_that_helps(figure):
-    left, right = figure.axes
-    assert "µs" in left.get_xlabel() and "µs" in right.get_xlabel()
-    assert ", N" in left.get_ylabel()
-    # Of 2 to 31 µs, and of 124 to 158.
-    assert (left.get_xscale(), right.get_xscale()) == ("log", "linear")
-    assert left.get_yscale() == right.get_yscale() == "log"
+def test_axes_have_units_and_are_logarithmic(figure):
+    (axes,) = figure.axes
+    assert "µs" in axes.get_xlabel() and ", N" in axes.get_ylabel()
+    # Times of 2 to 31 µs.
+    assert axes.get_xscale() == axes.get_yscale() == "log"
 
 
 def test_no_words_are_cut_off_or_meet(figure):
@@ -184,4 +177,4 @@ def test_labels_neither_meet_nor_leave_the_axes(name):
 
 def test_a_study_of_one_row_is_drawn():
     row = make_row("the scene", "as it is", 1.0, 1.0, 0.0, is_scene=True)
-    assert len(draw_study(make_study(row)).axes) == 2
+    assert len(draw_study(make_study(row)).axes) == 1

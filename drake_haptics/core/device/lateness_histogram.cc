@@ -1,4 +1,4 @@
-#include "device/latency_histogram.h"
+#include "device/lateness_histogram.h"
 
 #include <algorithm>
 #include <cmath>
