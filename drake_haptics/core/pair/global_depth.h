@@ -35,7 +35,7 @@ struct GlobalDepthState {
   DepthCertificate surface;
   Pose X_AB;          ///< pose at the last query
   double travel = 0;  ///< odometer, m
-  GlobalDepth last;   ///< features are none if there is no last answer
+  GlobalDepth last;   ///< without features if there is no answer
   int cursor = 0;     ///< triangle last tried for simplifying
   std::vector<NearTriangle> near;  ///< heap, nearest first
   DepthWorkspace walk;

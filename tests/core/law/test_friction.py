@@ -79,6 +79,25 @@ def test_forces_and_memory_agree_with_the_formulas(seed: int) -> None:
     assert slid > 20 and stuck > 20
 
 
+@pytest.mark.parametrize("change", [-1e-9, 1e-9])
+def test_an_object_is_found_again_after_a_small_change_of_the_state(
+    change: float,
+) -> None:
+    """Numerical differentiation changes every number of the state by a little."""
+    rng = np.random.default_rng(0)
+    moves, law = [False, True], Law((0.4, 0.7), 1.3, 1e-4, 5e-3)
+    tool, plates = burr(rng, 6)
+    rig = FrictionRig(tool, [plates] * 2, make_model(law, moves), moves=moves)
+    rig.remember(rig.look())
+    rig.state[4:6] += 2e-5
+    before = rig.look()
+    assert set(before.clusters.object_index) == {0, 1}
+    assert np.abs(before.friction_force).max() > 0.1
+    rig.memory = np.array(rig.memory)
+    rig.memory[14:].reshape(32, 12)[:, 0] += change
+    np.testing.assert_array_equal(rig.look().friction_force, before.friction_force)
+
+
 @pytest.mark.parametrize("seed", range(10, 16))
 def test_no_force_leaves_the_cone_or_the_tangent_plane(seed: int) -> None:
     ticks, _, law = wander(seed)
