@@ -282,6 +282,7 @@ void ConstraintRows::AppendRows(int k) {
   const PairContact& contact = plane.contact;
   const MinkowskiVertex support{contact.support[0], contact.support[1]};
   corners_.clear();
+  corners_.push_back({contact.distance, contact.p_a});
   if (contact.distance > 0) {
     const PosedPair pair = objects_[plane.object].near.Posed(
         tool_, plane.pieces, RelativePose(X_WT_, objects_[plane.object].X_WO));
@@ -295,11 +296,6 @@ void ConstraintRows::AppendRows(int k) {
       AppendFlushCorners(pair, contact.n, plane.next_support, reach,
                          &workspace_.patch, &corners_);
     }
-  }
-  // The corners of a flush overlap bear the nearest point, which lies between
-  // them; of a plane that was turned it need not.
-  if (corners_.empty() || plane.turned > 0) {
-    corners_.push_back({contact.distance, contact.p_a});
   }
   const Vec3 n = X_WT_.R * contact.n;
   for (const FacingPoint& point : corners_) {
