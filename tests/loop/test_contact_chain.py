@@ -355,7 +355,9 @@ def test_a_chain_knows_what_its_tracker_knew(monkeypatch: pytest.MonkeyPatch) ->
     tool.SetDiscreteState(0, read_state(separate, simulator.get_context())[:13])
     chain = query.GetOutputPort("contact_chain").Eval(own)
     assert isinstance(chain, ContactChain)
-    np.testing.assert_array_equal(
+    # The search begins where the other one ended, which can change the last bit.
+    np.testing.assert_allclose(
         query.GetOutputPort("contacts").Eval(own).distance,
         old.GetOutputPort("contacts").Eval(old_context).distance,
+        rtol=1e-12,
     )

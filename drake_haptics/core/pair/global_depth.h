@@ -33,10 +33,10 @@ struct NearTriangle {
 /// polytopes that it was first used with.
 struct GlobalDepthState {
   DepthCertificate surface;
-  Pose X_AB;          ///< pose at the last query
-  double travel = 0;  ///< odometer, m
-  GlobalDepth last;   ///< without features if there is no answer
-  int cursor = 0;     ///< triangle last tried for simplifying
+  Pose X_AB;                       ///< pose at the last query
+  double travel = 0;               ///< odometer, m
+  GlobalDepth last;                ///< without features if there is no answer
+  int cursor = 0;                  ///< triangle last tried for simplifying
   std::vector<NearTriangle> near;  ///< heap, nearest first
   DepthWorkspace walk;
 
