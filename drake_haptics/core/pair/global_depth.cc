@@ -37,9 +37,9 @@ constexpr double kSimplifyClearance = 1.05;
 // m, seen from the larger body.
 double MotionBound(const PosedPair& pair, const Pose& last) {
   const auto& [A, B, X_AB] = pair;
-  return B.radius <= A.radius
-             ? Motion(last, X_AB).Bound(B.centroid, B.radius)
-             : Motion(last.inverse(), X_AB.inverse()).Bound(A.centroid, A.radius);
+  return B.radius <= A.radius ? Motion(last, X_AB).Bound(B.centroid, B.radius)
+                              : Motion(last.inverse(), X_AB.inverse())
+                                    .Bound(A.centroid, A.radius);
 }
 
 class Search {
