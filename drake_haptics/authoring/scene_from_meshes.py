@@ -165,7 +165,7 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParame
         touch = np.array([touch_map.calc_height(radius * p) for p in circle])
         seen = np.isfinite(touch)
         if not seen.any():
-            raise SceneError("the tool, lowered onto the environment, passes it by")
+            raise SceneError("the tool, lowered onto the environment, misses it")
         # Where there is nothing below, the hand goes on at the height of the rest.
         touch[~seen] = touch[seen].mean()
         if np.ptp(touch) <= _LARGEST_RISE_M:

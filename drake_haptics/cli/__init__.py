@@ -31,7 +31,7 @@ _COMMANDS = {
             "Look into, replay, compare and export recorded runs.",
         ),
     },
-    "What there is": {
+    "Included": {
         "scenes": ("drake_haptics.cli.listings", "List the scenes that are included."),
         "devices": (
             "drake_haptics.cli.listings",

@@ -176,14 +176,14 @@ DEVICE = Lesson(
 )
 
 SCENES = Lesson(
-    examples=[("What there is", "drake-haptics scenes")],
+    examples=[("All scenes", "drake-haptics scenes")],
     further="`drake-haptics run SCENE` runs one. The files, to copy and change, are in"
     " models/scenes.",
 )
 
 DEVICES = Lesson(
     examples=[
-        ("What there is", "drake-haptics devices"),
+        ("All devices", "drake-haptics devices"),
         ("All figures", "drake-haptics devices --json -"),
     ],
     further="A scene file names one under `device: {preset: NAME}`. docs/device-twin.md"

@@ -84,7 +84,9 @@ def solve_arm_positions(
         error[3:] /= _ARM_LENGTH_M
         if np.linalg.norm(error) < _TOLERANCE:
             if np.linalg.svd(J, compute_uv=False)[-1] < _SMALLEST_SINGULAR_VALUE:
-                raise UnreachableError("the arm is at the edge of its reach or gimbal")
+                raise UnreachableError(
+                    "the arm is at the edge of its reach or in gimbal lock"
+                )
             return q
         damping = 1e-4 * min(1.0, float(np.linalg.norm(error)))
         step = np.linalg.solve(J.T @ J + damping * np.eye(len(q)), J.T @ error)

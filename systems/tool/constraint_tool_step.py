@@ -141,7 +141,8 @@ class ConstraintToolStep(Diagram):
         Raises:
             ValueError: The period, a skin or the break-away is not positive, a
                 coefficient is negative, there is not one for each object, there is no
-                object, or a name is used twice.
+                object, a name is used twice, or `start_servo` is given with an object
+                that moves.
         """
         super().__init__()
         if not period_s > 0.0:

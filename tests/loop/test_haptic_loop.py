@@ -1,4 +1,4 @@
-"""What there is to see of a loop, by the names of a diagram's outputs."""
+"""Every value of a loop is seen by the name of an output of the diagram."""
 
 import numpy as np
 import pytest
