@@ -63,8 +63,8 @@ class DeviceIo(Diagram):
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
     * `reading` (abstract) is the `DeviceReading` from which both come.
 
-    The state is two discrete groups, [X_WH; V_WH] (13) and the numbers of the reading
-    (24), both replaced by an unrestricted update every period from 0 s on. It raises
+    The state is one discrete group (37), [X_WH; V_WH] and the numbers of the reading,
+    replaced by an unrestricted update every period from 0 s on. It raises
     FloatingPointError where a reading is not finite.
     """
 
@@ -96,9 +96,7 @@ class DeviceIo(Diagram):
         )
         for port in map(exchange.get_input_port, range(exchange.num_input_ports())):
             builder.ExportInput(port, port.get_name())
-        export_parts(
-            builder, exchange.GetOutputPort("handle_state"), {"X_WH": 7, "V_WH": 6}
-        )
+        export_parts(builder, exchange.GetOutputPort("state"), {"X_WH": 7, "V_WH": 6})
         builder.ExportOutput(exchange.GetOutputPort("reading"), "reading")
         builder.BuildInto(self)
 
@@ -141,16 +139,17 @@ class _Exchange(LeafSystem):
             if backend.uses_slopes
             else None
         )
-        motion = self._frame.change_motion(first_reading.X_BH, first_reading.V_BH)
-        self.DeclareStateOutputPort("handle_state", self.DeclareDiscreteState(motion))
         # Drake copies the state twice a tick: numbers take a tenth of the time that a
-        # Python object takes.
-        self._reading = self.DeclareDiscreteState(_to_vector(first_reading))
+        # Python object takes, and Python writes and reads one group faster than two.
+        state = self.DeclareDiscreteState(
+            _to_state(self._change_motion(first_reading), first_reading)
+        )
+        self._eval_state = self.DeclareStateOutputPort("state", state).Eval
         self.DeclareAbstractOutputPort(
             "reading",
             Value[object],
             self._calc_reading,
-            {self.discrete_state_ticket(self._reading)},
+            {self.discrete_state_ticket(state)},
         )
         # Unrestricted updates come before all discrete ones of the same time.
         self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._read)
@@ -162,21 +161,22 @@ class _Exchange(LeafSystem):
         reading = self._backend.read()
         if reading is None:
             return
-        motion = self._frame.change_motion(reading.X_BH, reading.V_BH)
+        motion = self._change_motion(reading)
         if not math.isfinite(sum(motion.tolist())):
             raise FloatingPointError("the device's reading is not finite")
-        groups = state.get_mutable_discrete_state()
-        groups.set_value(0, motion)
-        groups.set_value(1, _to_vector(reading))
+        state.get_mutable_discrete_state().set_value(_to_state(motion, reading))
+
+    def _change_motion(self, reading: DeviceReading) -> np.ndarray:
+        """Returns [X_WH; V_WH] (13,) of a reading."""
+        return self._frame.change_motion(reading.X_BH, reading.V_BH)
 
     def _write(self, context: Context) -> None:
-        numbers = context.get_discrete_state(self._reading).CopyToVector()
-        F_W = self._eval_F_Ho_W_rendered(context)
+        state = self._eval_state(context)
         self._backend.write(
             DeviceCommand(
-                self._frame.change_wrench_back(F_W),
-                numbers[:7],
-                numbers[7:13],
+                self._frame.change_wrench_back(self._eval_F_Ho_W_rendered(context)),
+                state[_X_BH],
+                state[_V_BH],
                 *self._calc_slopes(context),
             )
         )
@@ -188,15 +188,15 @@ class _Exchange(LeafSystem):
         return self._frame.change_slopes_back(self._slopes.Eval(context))
 
     def _calc_reading(self, context: Context, reading: AbstractValue) -> None:
-        numbers = context.get_discrete_state(self._reading).CopyToVector()
-        sequence, time_s, buttons, gate, fault = numbers[19:].tolist()
+        state = self._eval_state(context)
+        sequence, time_s, buttons, gate, fault = state[32:].tolist()
         reading.set_value(
             DeviceReading(
                 int(sequence),
                 time_s,
-                numbers[:7],
-                numbers[7:13],
-                numbers[13:19],
+                state[_X_BH],
+                state[_V_BH],
+                state[26:32],
                 int(buttons),
                 GateState(gate),
                 Fault(fault),
@@ -204,13 +204,18 @@ class _Exchange(LeafSystem):
         )
 
 
-def _to_vector(reading: DeviceReading) -> np.ndarray:
-    """Returns the numbers (24,) of a reading."""
+# Parts of the state, after [X_WH; V_WH].
+_X_BH, _V_BH = slice(13, 20), slice(20, 26)
+
+
+def _to_state(motion: np.ndarray, reading: DeviceReading) -> np.ndarray:
+    """Returns the state (37,): [X_WH; V_WH], then the numbers of a reading."""
+    # NumPy converts floats faster than members of enumerations.
     told = (
-        reading.sequence,
+        float(reading.sequence),
         reading.time_s,
-        reading.buttons,
-        reading.gate,
-        reading.fault,
+        float(reading.buttons),
+        float(reading.gate),
+        float(reading.fault),
     )
-    return np.concatenate([reading.X_BH, reading.V_BH, reading.F_Ho_B, told])
+    return np.concatenate([motion, reading.X_BH, reading.V_BH, reading.F_Ho_B, told])

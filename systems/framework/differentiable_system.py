@@ -367,9 +367,12 @@ def export_parts(
     Args:
         builder: Builder of the diagram.
         vector: Output port of a system in the diagram.
-        sizes: Size of each part by the name of its port, in order.
+        sizes: Size of each part by the name of its port, in order. What follows the
+            last one is not exported.
     """
-    parts = builder.AddNamedSystem("parts", Demultiplexer(list(sizes.values())))
+    rest = vector.size() - sum(sizes.values())
+    all_sizes = [*sizes.values(), *([rest] if rest else [])]
+    parts = builder.AddNamedSystem("parts", Demultiplexer(all_sizes))
     builder.Connect(vector, parts.get_input_port(0))
     for i, name in enumerate(sizes):
         builder.ExportOutput(parts.get_output_port(i), name)

@@ -1,5 +1,7 @@
 """The exchange with a device: which value, in which frame, at which instant."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from device_diagram import PERIOD, X_WB, make_diagram
@@ -11,6 +13,7 @@ from pydrake.systems.framework import LeafSystem
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.device.backend import DeviceReading, Fault, GateState
 from drake_haptics.systems.device.device_io import DeviceIo
 
 
@@ -116,6 +119,28 @@ def test_a_device_with_nothing_new_stays_where_it_was():
         pose_to_vector(X_WB @ vector_to_pose(first.X_BH)),
         atol=1e-14,
     )
+
+
+def test_the_reading_is_shown_as_the_device_gave_it():
+    given = DeviceReading(
+        sequence=41,
+        time_s=0.25,
+        X_BH=np.array([0.5, -0.5, 0.5, 0.5, 0.1, 0.2, 0.3]),
+        V_BH=np.arange(1.0, 7.0),
+        F_Ho_B=np.arange(7.0, 13.0),
+        buttons=5,
+        gate=GateState.FAULT,
+        fault=Fault.OVERSPEED,
+    )
+    diagram, device = make_diagram(ScriptedDevice(lambda _: given))
+    simulator = Simulator(diagram)
+    simulator.AdvanceTo(PERIOD / 2)
+    context = device.GetMyContextFromRoot(simulator.get_context())
+    shown = device.GetOutputPort("reading").Eval(context)
+    for field in fields(DeviceReading):
+        value, expected = (getattr(one, field.name) for one in (shown, given))
+        assert type(value) is type(expected)
+        np.testing.assert_array_equal(value, expected)
 
 
 def test_a_handle_that_is_nowhere_ends_the_simulation():
