@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -40,6 +42,10 @@ def AppliedWrenches_(T: type) -> type:
         applied = copy(force)
         applied.F_Bq_W = SpatialForce(F_Bo_W)
         return applied
+
+    def add_up(evals: Sequence[Any], context: Any) -> Any:
+        """Returns the sum of vectors; `sum` begins with 0, a slow sum in itself."""
+        return reduce(add, [evaluate(context) for evaluate in evals])
 
     class Impl(LeafSystem_[T]):
         """Sums wrenches on the tool and on objects, each at its body's origin.
@@ -107,14 +113,12 @@ def AppliedWrenches_(T: type) -> type:
             Impl._construct(self, tool, on_tool, objects, on_objects, converter)
 
         def _calc_forces(self, context: Any, forces: AbstractValue) -> None:
-            on_tool = sum(eval_wrench(context) for eval_wrench in self._eval_on_tool)
-            on_objects = sum(
-                eval_wrench(context) for eval_wrench in self._eval_on_objects
-            )
-            wrenches = [on_tool]
-            wrenches += [
-                on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
-            ]
+            wrenches = [add_up(self._eval_on_tool, context)]
+            if self._eval_on_objects:
+                on_objects = add_up(self._eval_on_objects, context)
+                wrenches += [
+                    on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
+                ]
             forces.set_value(
                 [
                     apply(force, F_Bo_W)
