@@ -23,10 +23,10 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from hull_truth import deepest_outside, deepest_surface, lost_share
 from mesh_samples import REAL_MESHES
 from page_stamp import write_page
+from shapes import SHAPES
+from shapes.organ import make_organ
 
 from drake_haptics import Mesh, decompose, load_mesh
-from drake_haptics.evaluation.shapes import SHAPES
-from drake_haptics.evaluation.shapes.organ import make_organ
 from drake_haptics.geometry.mesh.decimation import decimate
 
 PAGE = (

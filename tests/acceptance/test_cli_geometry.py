@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from command_line import COMMAND, call
 from mesh_samples import box, l_prism, real_mesh
+from shapes import SHAPES
 
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 

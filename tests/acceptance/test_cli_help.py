@@ -9,10 +9,10 @@ import click
 import pytest
 import trimesh
 from click.testing import CliRunner
+from shapes import SHAPES
 
 from drake_haptics.cli import main
 from drake_haptics.cli.lessons import LazyGroup
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.scene.library import list_scenes
 
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import websocket
 from command_line import COMMAND, call, invoke
+from shapes import SHAPES
 
 from drake_haptics.cli import run_session
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.scene.library import list_scenes
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics

@@ -46,7 +46,7 @@ OTHER_PROGRAMS = {
     "make docs",  # test_docs_site.py
     "make tutorials",  # its notebooks: test_tutorials.py
     "pip install PATH_OF_THE_CHECKOUT",  # make runs it, on the checkout
-    "python -m drake_haptics.evaluation.shapes",  # evaluation/shapes/test_shapes.py
+    "python docs/generate/make_meshes.py",  # docs/shapes/test_shapes.py
     "run",  # the command in short
 }
 

@@ -8,11 +8,11 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
+from shapes import SHAPES
 
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.common.errors import MeshError, SceneError
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.haptic_loop import ConnectMovingObject

@@ -11,10 +11,10 @@ import trimesh
 from box_scenes import write, write_scene
 from cell_mesh import cell_mesh
 from pydrake.math import RigidTransform, RotationMatrix
+from shapes.solids import SOCKET_PLAY_M
 
 from drake_haptics import make_simulator
 from drake_haptics.authoring.plausibility import check_plausibility
-from drake_haptics.evaluation.shapes.solids import SOCKET_PLAY_M
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.loop.builder import BuildHapticDiagram

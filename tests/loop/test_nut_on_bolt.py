@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
+from shapes.threads import THREAD_PITCH_M
 
 from drake_haptics import BuildHapticDiagram, find_scene, load_scene
-from drake_haptics.evaluation.shapes.threads import THREAD_PITCH_M
 from drake_haptics.loop.clearance import find_clearance
 from drake_haptics.simulation.run import run
 

@@ -29,7 +29,7 @@ REPO = Path(__file__).resolve().parents[2]
 # Links for editors and type checkers; no program may need them.
 LINKS = ("drake_haptics/systems", "drake_haptics/models")
 # Scenes and presets, meshes.
-KINDS = (".yaml", ".obj")
+KINDS = (".yaml", ".obj", ".npz")
 SETTINGS = {"wheel.cmake": "false", "wheel.py-api": "py3"}
 ASKED = """
 import drake_haptics as dh

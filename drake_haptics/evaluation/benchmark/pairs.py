@@ -7,9 +7,9 @@ from functools import cache
 from itertools import product
 
 import numpy as np
+import trimesh
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
-from drake_haptics.evaluation.shapes.solids import divide_icosahedron
 
 RADIUS_M = 0.05
 SIZES = (8, 42, 162, 642, 2562)
@@ -95,7 +95,7 @@ def _directions(size: int) -> np.ndarray:
     divisions = {42: 1, 162: 2, 642: 3, 2562: 4}
     if size not in divisions:
         raise ValueError(f"size must be one of {SIZES}, not {size}")
-    return divide_icosahedron(divisions[size])[0]
+    return np.array(trimesh.creation.icosphere(divisions[size]).vertices)
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,13 @@ import numpy as np
 
 from drake_haptics._core import SceneTracker
 from drake_haptics.evaluation.benchmark.pairs import RATE_HZ, rotation, unit
-from drake_haptics.evaluation.shapes.hand_tools import make_wrench
-from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
-from drake_haptics.evaluation.shapes.models import (
+from drake_haptics.evaluation.models import (
     check_folder,
     cut_shape,
     find_sources,
+    load_machine_room,
     load_model,
+    wrench_path,
 )
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
 
@@ -214,14 +214,11 @@ def _peg_in_hole(motions: int) -> SceneProblem:
 
 
 def _machine_room(motions: int) -> SceneProblem:
-    room = make_machine_room()
-    shapes = {
-        name: decompose(surface.to_mesh(name)) for name, surface in room.shapes.items()
-    }
+    room = load_machine_room()
     return SceneProblem(
         name="wrench in machine room",
-        tool=decompose(make_wrench().to_mesh("wrench")),
-        objects=[shapes[placed.shape] for placed in room.objects],
-        X_WO=np.array([placed.X_WO for placed in room.objects]),
+        tool=cut_shape("wrench"),
+        objects=[placed.pieces for placed in room],
+        X_WO=np.array([placed.X_WO for placed in room]),
         motions=[wrench_path(3000)] * min(motions, 1),
     )

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from drake_haptics.evaluation.measuring.timing import describe_machine
+from drake_haptics.evaluation.models import check_folder
 from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
 from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
 from drake_haptics.evaluation.paper.profile import (
@@ -24,8 +25,6 @@ from drake_haptics.evaluation.paper.scaling import (
 )
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
 from drake_haptics.evaluation.paper.table1 import ModelFigures, measure_table1
-from drake_haptics.evaluation.shapes.models import check_folder
-from drake_haptics.evaluation.shapes.solids import make_sphere
 
 Part = Literal["table1", "figure11", "figure12", "analysis"]
 PARTS: tuple[Part, ...] = get_args(Part)
@@ -198,7 +197,7 @@ def _measure_figure12(
     show("a pen on a sphere", 0.0)
     coarse = measure_pen_pass(seconds=effort.pen_s)
     show("a pen on a fine sphere", 0.5)
-    return coarse, measure_pen_pass(make_sphere(_FINE_DIVISIONS), effort.pen_s)
+    return coarse, measure_pen_pass(_FINE_DIVISIONS, effort.pen_s)
 
 
 def _measure_analysis(effort: Effort, meshes: Path | None, show: Progress) -> Analysis:

@@ -8,12 +8,13 @@ from importlib.util import find_spec
 from typing import Any, Literal
 
 import numpy as np
+import trimesh
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.evaluation.benchmark.pairs import rotation, unit
 from drake_haptics.evaluation.benchmark.python_pairs import CoalQuery
-from drake_haptics.evaluation.shapes.solids import make_pen, make_sphere
-from drake_haptics.evaluation.shapes.surface import Surface
+from drake_haptics.evaluation.models import load_shape
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 RADIUS_M = 0.040
 OURS = "drake_haptics"
@@ -152,7 +153,7 @@ def _degrees(angle_rad: float) -> float:
     return float(np.rad2deg(angle_rad))
 
 
-_Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]
+_Follow = Callable[[Mesh, Mesh, np.ndarray], ContactCurves]
 
 
 @dataclass(frozen=True)
@@ -214,17 +215,17 @@ def plan_pen_pass(seconds: float = _SECONDS) -> np.ndarray:
     return X_WA
 
 
-def measure_pen_pass(
-    sphere: Surface | None = None, seconds: float = _SECONDS
-) -> PenPass:
+def measure_pen_pass(divisions: int = 3, seconds: float = _SECONDS) -> PenPass:
     """Follows the contact of the package's pen and a sphere along a pass.
 
     Args:
-        sphere: Sphere about the origin. Defaults to the package's own.
+        divisions: Number of times that each triangle of an icosahedron is divided into
+            four to make the sphere; 3 make the shipped one.
         seconds: Duration of the pass, s.
     """
-    pen = make_pen()
-    sphere = sphere or make_sphere()
+    pen = load_shape("pen")
+    ball = trimesh.creation.icosphere(divisions, RADIUS_M)
+    sphere = Mesh.from_arrays(np.round(ball.vertices, 9), ball.faces)
     X_WA = plan_pen_pass(seconds)
     truth = calc_sphere_contact(pen.vertices, pen.triangles, X_WA, RADIUS_M)
     curves = {
@@ -242,8 +243,8 @@ def measure_pen_pass(
 
 
 def _follow(
-    pen: Surface,
-    sphere: Surface,
+    pen: Mesh,
+    sphere: Mesh,
     X_WA: np.ndarray,
     depth: Literal["tracked", "global"] = "tracked",
 ) -> ContactCurves:
@@ -254,7 +255,7 @@ def _follow(
     return ContactCurves(found.distance, found.nhat_BA_W, found.p_WC)
 
 
-def _follow_with_coal(pen: Surface, sphere: Surface, X_WA: np.ndarray) -> ContactCurves:
+def _follow_with_coal(pen: Mesh, sphere: Mesh, X_WA: np.ndarray) -> ContactCurves:
     """Returns coal's answers, each query warm."""
     query = CoalQuery(pen.vertices, sphere.vertices, "CachedGuess")
     rows = []
@@ -275,7 +276,7 @@ def _find_libraries() -> dict[str, _Follow]:
     return found
 
 
-def _find_corner(surface: Surface) -> float:
+def _find_corner(surface: Mesh) -> float:
     """Returns the largest angle between neighboring faces, degrees."""
     corners = surface.vertices[surface.triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

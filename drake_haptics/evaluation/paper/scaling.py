@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+import trimesh
 
 from drake_haptics import _core
 from drake_haptics._core import SceneTracker
 from drake_haptics.evaluation.measuring.timing import typical
 from drake_haptics.evaluation.paper.fits import LineFit, PowerFit, fit_line, fit_power
-from drake_haptics.evaluation.shapes.surface import SurfaceBuilder, circle, loft
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 NUM_TEETH = (1, 2, 4, 8, 16, 32, 64)
 _TOLERANCE_M = 1e-3
@@ -81,27 +82,27 @@ def make_brush(
         across: Number of the teeth in a row.
         spacing_m: Distance of two neighbors, m.
     """
-    builder = SurfaceBuilder()
     row, column = np.divmod(np.arange(teeth), across)
     places = (np.column_stack([column, row]) - (across - 1) / 2) * spacing_m
     radius_m = min(spacing_m / 3, _WIDEST_M) / 2
-    for x, y in places:
-        rings = [
-            builder.add_ring(np.add(circle(radius_m, z, 8), (x, y, 0.0)))
-            for z in (0.003, 0.010)
-        ]
-        builder.add_fan(rings[0], builder.add_vertex((x, y, 0.0)), at_start=True)
-        builder.add_band(*rings)
-        builder.add_fan(rings[1], builder.add_vertex((x, y, 0.0105)), at_start=False)
-    return decompose(builder.build().to_mesh())
+    angle = np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)
+    x, y = radius_m * np.cos(angle), radius_m * np.sin(angle)
+    rings = [np.column_stack([x, y, np.full(8, z)]) for z in (0.003, 0.010)]
+    ends = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0105)]
+    tooth = trimesh.convex.convex_hull(np.vstack([*rings, ends]))
+    brush = trimesh.util.concatenate(
+        [tooth.copy().apply_translation((x, y, 0.0)) for x, y in places]
+    )
+    return decompose(Mesh.from_arrays(brush.vertices, brush.faces))
 
 
 def make_plate() -> Decomposition:
     """Returns a plate 200 mm wide and 20 mm thick, with its top at z = 0."""
-    corners = np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)]) * _PLATE_M / 2
-    levels = [np.column_stack([corners, np.full(4, z)]) for z in (-0.02, 0.0)]
-    surface = loft((0.0, 0.0, -0.02), levels, (0.0, 0.0, 0.0))
-    return decompose(surface.to_mesh())
+    half_m = _PLATE_M / 2
+    plate = trimesh.creation.box(
+        bounds=[(-half_m, -half_m, -0.02), (half_m, half_m, 0.0)]
+    )
+    return decompose(Mesh.from_arrays(plate.vertices, plate.faces))
 
 
 def plan_slide(ticks: int) -> np.ndarray:

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
-from drake_haptics.evaluation.paper.exploration import Place, Scenario, plan_exploration
-from drake_haptics.evaluation.shapes.hand_tools import make_wrench
-from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
-from drake_haptics.evaluation.shapes.models import (
+from drake_haptics.evaluation.models import (
     MODELS,
     OWN,
     cut_shape,
     find_sources,
+    load_machine_room,
     load_model,
+    wrench_path,
 )
+from drake_haptics.evaluation.paper.exploration import Place, Scenario, plan_exploration
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.schema import ContactParameters
@@ -163,13 +163,11 @@ def _find_front(mesh: Mesh) -> Iterator[np.ndarray]:
 
 def _make_machine_room() -> Scenario:
     """Leads the wrench's flat over the tubes of the panel, up, down and rocking."""
-    room = make_machine_room()
-    pieces = {n: decompose(s.to_mesh(n)) for n, s in room.shapes.items()}
     objects = tuple(
-        ContactObject(o.name, pieces[o.shape].core, RigidTransform(o.X_WO))
-        for o in room.objects
+        ContactObject(name, pieces.core, RigidTransform(X_WO))
+        for name, pieces, X_WO in load_machine_room()
     )
-    wrench = decompose(make_wrench().to_mesh("wrench"))
+    wrench = cut_shape("wrench")
     low, high = (RigidTransform(X) for X in wrench_path(2))
     places = []
     press = _press_again()

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from drake_haptics.evaluation.models import find_sources, load_model
 from drake_haptics.evaluation.paper.published import TABLE_1
-from drake_haptics.evaluation.shapes.models import find_sources, load_model
 from drake_haptics.geometry.decomposition.decompose import decompose
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shapes import SHAPES
 
 from drake_haptics import _core
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh, calc_mass_properties
 from drake_haptics.systems.tool.virtual_coupling import coupling_wrench

@@ -29,7 +29,7 @@ from drake_haptics.evaluation.benchmark.scene_runs import (
     run_scene,
 )
 from drake_haptics.evaluation.benchmark.scenes import SceneProblem, make_touches
-from drake_haptics.evaluation.shapes.models import cut_shape
+from drake_haptics.evaluation.models import cut_shape
 
 # Right but for a share, so that its errors are known.
 TOY = '''

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from drake_haptics.evaluation.models import load_shape
 from drake_haptics.evaluation.paper.pen_pass import (
     OURS,
     RADIUS_M,
@@ -15,7 +16,6 @@ from drake_haptics.evaluation.paper.pen_pass import (
     measure_smoothness,
     plan_pen_pass,
 )
-from drake_haptics.evaluation.shapes.solids import make_pen, make_sphere
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def passed():
 
 def test_the_truth_is_the_nearest_point_of_the_pen():
     """Found by an optimizer over convex combinations of the pen's vertices."""
-    pen = make_pen()
+    pen = load_shape("pen")
     X_WA = plan_pen_pass(0.2)[::25]
     truth = calc_sphere_contact(pen.vertices, pen.triangles, X_WA, RADIUS_M)
     for k, X in enumerate(X_WA):
@@ -74,7 +74,7 @@ def test_the_motion_goes_in_and_out_and_is_rigid():
 
 def test_ours_is_near_the_perfect_sphere(passed):
     """The polyhedron is within its sagitta and its faces' tilt."""
-    sphere = make_sphere()
+    sphere = load_shape("sphere")
     corners = sphere.vertices[sphere.triangles]
     sagitta_m = RADIUS_M - np.linalg.norm(corners.mean(axis=1), axis=1).min()
     inside = passed.curves[OURS].distance_m < 0.0
@@ -89,14 +89,14 @@ def test_ours_is_near_the_perfect_sphere(passed):
 def test_the_corner_is_the_largest_between_neighbors(passed):
     """By another library."""
     trimesh = pytest.importorskip("trimesh")
-    sphere = make_sphere()
+    sphere = load_shape("sphere")
     mesh = trimesh.Trimesh(sphere.vertices, sphere.triangles, process=False)
     largest = np.rad2deg(mesh.face_adjacency_angles.max())
     assert passed.corner_deg == pytest.approx(largest, rel=1e-6)
 
 
 def test_a_finer_sphere_is_nearer_to_the_perfect_one(passed):
-    fine = measure_pen_pass(make_sphere(4), seconds=1.0)
+    fine = measure_pen_pass(4, seconds=1.0)
     coarse, finer = passed.smoothness[OURS], fine.smoothness[OURS]
     assert finer.distance_error_m < 0.4 * coarse.distance_error_m
     assert finer.normal_error_deg < 0.7 * coarse.normal_error_deg

@@ -6,6 +6,7 @@ from pydrake.math import RigidTransform
 
 from drake_haptics import SceneTracker
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.evaluation.models import cut_shape
 from drake_haptics.evaluation.paper.exploration import (
     PERIOD_S,
     Place,
@@ -20,7 +21,6 @@ from drake_haptics.evaluation.paper.published import (
     TOUCHED_OBJECTS,
 )
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
-from drake_haptics.evaluation.shapes.models import cut_shape
 from drake_haptics.systems.contact.contact_query import ContactObject
 
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from shapes import SHAPES
+from shapes.organ import make_organ
 
+from drake_haptics.evaluation.models import MODELS, OWN, find_sources
 from drake_haptics.evaluation.paper.published import TABLE_1
 from drake_haptics.evaluation.paper.table1 import measure_table1
-from drake_haptics.evaluation.shapes import SHAPES
-from drake_haptics.evaluation.shapes.models import MODELS, OWN, find_sources
-from drake_haptics.evaluation.shapes.organ import make_organ
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 

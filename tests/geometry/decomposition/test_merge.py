@@ -10,12 +10,12 @@ from mesh_samples import box, joined, l_prism
 from press_rig import GAINS, sample_presses
 from press_tools import make_tools
 from press_verdict import judge
+from shapes import SHAPES
 from solid_surface import Overlap, Surface
 from surface_distance import distances
 
 from drake_haptics import _core
 from drake_haptics.common.errors import HapticsError
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from mesh_samples import box, joined, real_mesh
+from shapes import SHAPES
 from surface_distance import distances
 
 from drake_haptics import _core
 from drake_haptics.common.errors import MeshError
-from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 

@@ -7,10 +7,9 @@ import sys
 import numpy as np
 import pytest
 import trimesh
+from shapes import SHAPES, Surface
+from shapes.surface import SurfaceBuilder
 from surface_crossings import crossing_edges
-
-from drake_haptics.evaluation.shapes import SHAPES, Surface
-from drake_haptics.evaluation.shapes.surface import SurfaceBuilder
 
 # Triangles in Table 1 of Kim, Otaduy, Lin and Manocha.
 TABLE_1 = {"torus": 2000, "cup": 500, "spoon": 336, "hammer": 1692}
@@ -139,15 +138,15 @@ def test_shipped_files_are_what_the_code_makes(name):
 
 
 def test_regeneration_writes_every_shape(tmp_path):
-    command = [
-        sys.executable,
-        "-m",
-        "drake_haptics.evaluation.shapes",
-        str(tmp_path / "new"),
-    ]
+    command = [sys.executable, "docs/generate/make_meshes.py", str(tmp_path / "new")]
     subprocess.run(command, check=True, capture_output=True)
-    written = {path.stem for path in (tmp_path / "new").glob("*.obj")}
-    assert written == set(SHAPES)
+    new = tmp_path / "new"
+    assert {path.stem for path in (new / "meshes").iterdir()} == set(SHAPES)
+    assert {path.name for path in (new / "evaluation").iterdir()} == {
+        "organ.obj",
+        "wrench.obj",
+        "machine_room.npz",
+    }
 
 
 def test_rings_of_unequal_length_are_refused():

@@ -1,13 +1,13 @@
 """The shapes of the shipped scenes, made by code.
 
-Each generator returns a closed, outward wound `Surface` in meters. `python -m
-drake_haptics.evaluation.shapes` writes them all to `models/meshes`.
+Each generator returns a closed, outward wound `Surface` in meters;
+`docs/generate/make_meshes.py` writes them all to `models`.
 """
 
 from collections.abc import Callable
 
-from drake_haptics.evaluation.shapes.hand_tools import make_hammer
-from drake_haptics.evaluation.shapes.solids import (
+from shapes.hand_tools import make_hammer
+from shapes.solids import (
     make_block,
     make_cup,
     make_peg,
@@ -17,8 +17,8 @@ from drake_haptics.evaluation.shapes.solids import (
     make_spoon,
     make_torus,
 )
-from drake_haptics.evaluation.shapes.surface import Surface
-from drake_haptics.evaluation.shapes.threads import make_bolt, make_nut
+from shapes.surface import Surface
+from shapes.threads import make_bolt, make_nut
 
 # Name of a shipped mesh -> the function that makes it.
 SHAPES: dict[str, Callable[[], Surface]] = {

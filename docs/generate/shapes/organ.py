@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.surface import (
+from shapes.surface import (
     SmoothPath,
     Surface,
     SurfaceBuilder,

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.hand_tools import HALF_THICKNESS_M
-from drake_haptics.evaluation.shapes.room_parts import (
+from drake_haptics.evaluation.models import FRONT_Y_M, PANEL_X_M
+from shapes.room_parts import (
     BEND,
     flange_length,
     flange_radius,
@@ -28,8 +28,8 @@ from drake_haptics.evaluation.shapes.room_parts import (
     make_valve_body,
     valve_length,
 )
-from drake_haptics.evaluation.shapes.solids import make_slab
-from drake_haptics.evaluation.shapes.surface import Surface, rounded_path, sweep_tube
+from shapes.solids import make_slab
+from shapes.surface import Surface, rounded_path, sweep_tube
 
 _LENGTH_M, _WIDTH_M, _HEIGHT_M = 10.0, 7.0, 3.2
 # Radii of the pipes on the rack along the back wall, m.
@@ -41,9 +41,6 @@ _CLAMPED_FROM_M = 0.7
 NUM_TUBES = 15
 _SPACING_M = 0.0235
 _TUBE_RADII_M = (0.008, 0.006, 0.007)
-# The fronts of tubes and struts are in one plane, which faces -y.
-_FRONT_Y_M = 3.3
-_PANEL_X_M = 2.0
 _TUBE_Z_M = (0.9, 1.6)
 
 
@@ -353,45 +350,14 @@ def add_instrument_panel(room: RoomBuilder) -> None:
     """Adds a panel with tubes before it, between two struts that end in their plane."""
     low, high = _TUBE_Z_M
     half_row = _SPACING_M * (NUM_TUBES + 1) / 2
-    behind = _FRONT_Y_M + 0.1
-    panel = pose((_PANEL_X_M, behind + 0.02, 0.6))
+    behind = FRONT_Y_M + 0.1
+    panel = pose((PANEL_X_M, behind + 0.02, 0.6))
     room.place(make_slab, [0.7, 0.01, 1.3], panel)
     for side in (-1, 1):
-        strut = pose((_PANEL_X_M + side * half_row, _FRONT_Y_M + 0.05, low - 0.05))
+        strut = pose((PANEL_X_M + side * half_row, FRONT_Y_M + 0.05, low - 0.05))
         room.place(make_slab, [0.016, 0.1, high - low + 0.1, 0.002], strut)
     for k in range(NUM_TUBES):
-        x = _PANEL_X_M + (k + 1) * _SPACING_M - half_row
+        x = PANEL_X_M + (k + 1) * _SPACING_M - half_row
         radius = _TUBE_RADII_M[k % len(_TUBE_RADII_M)]
-        tube = pose((x, _FRONT_Y_M, 0))
+        tube = pose((x, FRONT_Y_M, 0))
         room.place(make_tube, [radius, low, high, 0.1], tube)
-
-
-def wrench_path(num_poses: int) -> np.ndarray:
-    """Returns a path of the wrench across the tubes and struts.
-
-    It comes near, presses 0.2 mm into the 17 of them, slides up along the tubes by
-    150 mm while it rocks a little, and leaves. If it takes 3 s, nothing moves faster
-    than 0.15 m/s.
-
-    Args:
-        num_poses: Number of poses, at equal times.
-
-    Returns:
-        X_WT (num_poses, 4, 4).
-    """
-    s = np.linspace(0, 1, num_poses)
-    press = np.clip(np.minimum(s, 1 - s) / 0.2, 0, 1)
-    press = press**2 * (3 - 2 * press)
-    away = 0.012 * (1 - press) - 0.0002 * press
-    slide = np.clip((s - 0.2) / 0.6, 0, 1)
-    rock = 2e-3 * press * np.sin(6 * np.pi * slide)
-    # The tool's -z faces the tubes, along +y; its x is along the row of tubes.
-    c, n, zero = np.cos(rock), np.sin(rock), np.zeros(num_poses)
-    path = np.tile(np.eye(4), (num_poses, 1, 1))
-    path[:, :3, 0] = np.column_stack([c, n, zero])
-    path[:, :3, 1] = [0, 0, 1]
-    path[:, :3, 2] = np.column_stack([n, -c, zero])
-    path[:, 0, 3] = _PANEL_X_M
-    path[:, 1, 3] = _FRONT_Y_M - HALF_THICKNESS_M - away
-    path[:, 2, 3] = 1.15 + 0.15 * slide**2 * (3 - 2 * slide)
-    return path

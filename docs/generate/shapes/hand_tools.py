@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.surface import (
+from drake_haptics.evaluation.models import WRENCH_HALF_THICKNESS_M
+from shapes.surface import (
     Surface,
     SurfaceBuilder,
     circle,
@@ -59,7 +60,6 @@ _HANDLE = (
 _TINE_SECTIONS = 9
 _CLAW_BEND_RADIUS_M = 0.032
 _CLAW_BEND_RAD = 1.0
-HALF_THICKNESS_M = 0.006
 _WRENCH_CHAMFER_M = 0.002
 # Along the wrench, in m: x, half width.
 _WRENCH_HANDLE = (
@@ -209,7 +209,7 @@ def _jaw_section(side: int, x: float, inner: float, outer: float) -> np.ndarray:
 
 def _wrench_half(inner: float, outer: float) -> np.ndarray:
     """Returns the (y, z) of the half section on the +y side, from below to above."""
-    h, c = HALF_THICKNESS_M, _WRENCH_CHAMFER_M
+    h, c = WRENCH_HALF_THICKNESS_M, _WRENCH_CHAMFER_M
     corners = [
         (inner, -h), (outer - c, -h), (outer, c - h), (outer, 0.0),
         (outer, h - c), (outer - c, h), (inner, h),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.surface import (
+from shapes.surface import (
     Surface,
     SurfaceBuilder,
     circle,

@@ -45,7 +45,7 @@ class Surface:
         """
         lines = [
             f"# {title}",
-            "# Units: meters. Made by: python -m drake_haptics.evaluation.shapes",
+            "# Units: meters. Made by: python docs/generate/make_meshes.py",
         ]
         lines += [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in self.vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in self.triangles + 1]

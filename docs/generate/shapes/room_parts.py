@@ -9,8 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.solids import chamfered_outline
-from drake_haptics.evaluation.shapes.surface import (
+from shapes.solids import chamfered_outline
+from shapes.surface import (
     Surface,
     SurfaceBuilder,
     circle,

@@ -5,12 +5,13 @@ import pytest
 import trimesh
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from shapes.organ import make_organ
 from surface_crossings import crossing_edges
 
 from drake_haptics import decompose
-from drake_haptics.evaluation.shapes.organ import make_organ
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.mesh.topology import winding_numbers
+from drake_haptics.models import FOLDER
 
 # The digestive system in Table 1 of Kim, Otaduy, Lin and Manocha.
 PAPER_TRIANGLES, PAPER_PIECES = 24_846, 9_913
@@ -88,3 +89,10 @@ def test_it_is_cut_into_pieces_of_many_triangles_within_the_solid(organ):
     ]
     inside = winding_numbers(np.array(points), organ.vertices, organ.triangles) > 0.5
     assert inside.all()
+
+
+def test_the_shipped_organ_is_what_the_code_makes(organ):
+    shipped = trimesh.load(FOLDER / "evaluation" / "organ.obj", process=False)
+    np.testing.assert_array_equal(shipped.faces, organ.triangles)
+    # Another platform's sine may round the last nanometer differently.
+    np.testing.assert_allclose(shipped.vertices, organ.vertices, atol=2e-9)

@@ -4,7 +4,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.surface import (
+from shapes.surface import (
     Surface,
     SurfaceBuilder,
     circle,
