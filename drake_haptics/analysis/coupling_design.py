@@ -47,15 +47,7 @@ def plot_axis_design(
     delay_s: float,
     units: tuple[str, str],
 ) -> None:
-    """Draws K over B: the device's limits when let go, passivity, and the chosen gains.
-
-    Args:
-        axes: The axes to draw on.
-        design: The design for one kind of motion.
-        period_s: T, s.
-        delay_s: t_d, s.
-        units: Units of K and of B.
-    """
+    """Draws K over B: limits of the device let go, passivity, and chosen gains."""
     device = design.device
     B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
     free = make_wall(device, AxisHand(), period_s, delay_s)

@@ -61,12 +61,7 @@ def calc_path(root: System, system: System) -> str:
 
 
 def find_timings(root: System, context: Context) -> list[Timing]:
-    """Returns the timings of all periodic discrete updates, fastest first.
-
-    Args:
-        root: Any system.
-        context: Its root context.
-    """
+    """Returns the timings of all periodic discrete updates, fastest first."""
     found = []
     for leaf in walk_leaves(root):
         if leaf.num_discrete_state_groups() == 0:

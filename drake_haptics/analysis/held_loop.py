@@ -72,10 +72,6 @@ def build_with_same_load(
     elsewhere. So handle and hand are moved until their springs load the tool with the
     same wrench.
 
-    Args:
-        held: The result of `hold_scene`.
-        coupling: Gains; the scene's own if not given.
-
     Returns:
         The diagram, and its root context at rest but for round-off.
 

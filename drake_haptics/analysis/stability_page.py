@@ -19,11 +19,6 @@ _Table = tuple[list[str], list[list[str]]]
 def write_stability_page(stability: SceneStability, name: str, path: Path) -> None:
     """Writes the page as one HTML file, and its picture beside it as PNG.
 
-    Args:
-        stability: The result of `analyze_scene`.
-        name: Name of the scene.
-        path: Path of the HTML file; the picture has the suffix `.png` instead.
-
     Raises:
         ValueError: The path has the picture's suffix.
         OSError: A file cannot be written.

@@ -43,11 +43,7 @@ _VERTICES = 16
 
 
 def check_plausibility(haptic: HapticDiagram) -> list[str]:
-    """Returns sentences about what is probably not intended in a scene.
-
-    Args:
-        haptic: Diagram of the scene.
-    """
+    """Returns sentences about what is probably not intended in a scene."""
     return [
         *_question_sizes(haptic),
         *question_tolerance(

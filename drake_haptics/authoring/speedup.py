@@ -24,10 +24,6 @@ _EFFECTS = {
 def suggest_speedup(parts: Iterable[Part], scene: Scene) -> str | None:
     """Names the key that helps most where the ticks of a run take too long.
 
-    Args:
-        parts: Parts of a tick, as `explain_tick` returns them.
-        scene: Scene that ran.
-
     Returns:
         A sentence; None where a tick takes less than four fifths of its period and than
         `device.tick_budget_us`, or no key shortens a part that takes much.
@@ -46,10 +42,6 @@ def suggest_speedup(parts: Iterable[Part], scene: Scene) -> str | None:
 
 def find_key_that_helps(costs_us: Mapping[str, float], scene: Scene) -> str | None:
     """Returns what to change in a scene so that its costliest part costs less.
-
-    Args:
-        costs_us: Times of the known parts of a tick, by the names of their systems, µs.
-        scene: Scene that runs.
 
     Returns:
         A sentence, or None where no key shortens a part that takes much.

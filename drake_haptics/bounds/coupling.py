@@ -107,12 +107,6 @@ def find_broken_bounds(
 ) -> list[BrokenBound]:
     """Checks a coupling against the bounds of `drake_haptics.bounds.sampled_spring`.
 
-    Args:
-        coupling: K and B of both kinds.
-        handle: Handle that they act on.
-        period_s: The tick T, s.
-        delay_s: Delay t_d on top of the hold's half period, s.
-
     Returns:
         Each bound that is broken. Empty if the loop is stable by
         `calc_stable_stiffness` and `calc_sampled_damping`, and passive by

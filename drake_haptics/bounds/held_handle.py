@@ -28,10 +28,6 @@ from drake_haptics.systems.device.haptic_device import HapticDevice
 def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
     """Checks a scene's coupling on its simulated device in its hand.
 
-    Args:
-        scene: Gains, grip and rate.
-        device: Simulated device of the scene, from `make_simulated_device`.
-
     Returns:
         A sentence for each bound that is broken, as `check_coupling` has it.
     """
@@ -46,9 +42,6 @@ def check_real_coupling(scene: Scene) -> list[str]:
     The coupling is held to the device's ratings and, where the preset has a model, to
     the bounds on its twin. Nobody knows how firmly a real device is held: the bounds
     are those in the loosest grip.
-
-    Args:
-        scene: Gains, preset and rate.
 
     Returns:
         A sentence for each rating that is exceeded, then those of
@@ -65,13 +58,7 @@ def check_real_coupling(scene: Scene) -> list[str]:
 def find_real_bounds(
     scene: Scene, preset: DevicePreset, loosely_held: HeldHandle | None
 ) -> list[BrokenBound]:
-    """Returns the bounds that a coupling breaks on a real device.
-
-    Args:
-        scene: Gains and rate.
-        preset: Preset of the scene.
-        loosely_held: Handle that `calc_loosely_held` returned for them.
-    """
+    """Returns the bounds that a coupling breaks on a real device."""
     found = find_exceeded_ratings(scene.coupling, preset)
     if loosely_held is not None:
         period_s = scene.device.wrench_period_s

@@ -79,9 +79,6 @@ def failures_in_words(debug: bool) -> Iterator[None]:
 
     Python's warnings and what libraries log become a line each on stderr.
 
-    Args:
-        debug: Whether a traceback comes before the message.
-
     Raises:
         click.ClickException: Something failed; it has the message and the exit code.
     """
@@ -156,9 +153,6 @@ def _describe_defect(error: BaseException) -> str:
 @contextmanager
 def naming(option: str) -> Iterator[None]:
     """Puts the option before the library's message about its argument.
-
-    Args:
-        option: The option as the user gives it, or several.
 
     Raises:
         HapticsError: The library raised one, whose message names no option.
@@ -235,9 +229,6 @@ def lasting_interrupt(
 
     Signals that are ignored, as in a script's background or under `nohup`, still are.
     Only the main thread may use it.
-
-    Args:
-        clock: Reads the time, s.
 
     Yields:
         A function that a loop calls now and then: raises `KeyboardInterrupt` if asked.

@@ -138,10 +138,6 @@ def require_folder(
 def require_writable(path: Path, option: str) -> None:
     """Checks that a file can be written.
 
-    Args:
-        path: Path of the file.
-        option: The option that names it.
-
     Raises:
         HapticsError: There is no such folder, or nothing can be written there.
     """
@@ -208,10 +204,6 @@ def set_option(function: _Function) -> _Function:
 
 def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
     """Returns a scene with the changes of --set.
-
-    Args:
-        scene: A shipped scene's name, or a file.
-        settings: Values of the option --set.
 
     Raises:
         SceneError: There is no such scene, or it cannot be used.

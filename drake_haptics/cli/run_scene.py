@@ -57,11 +57,7 @@ def make_parts_table(parts: Sequence[Part]) -> Table:
 
 
 def describe_skin(speed_m_per_s: float) -> str:
-    """Says above which speed a step skips the skin of contact.
-
-    Args:
-        speed_m_per_s: Speed at which a step crosses the skin, m/s, see `HapticDiagram`.
-    """
+    """Says above which speed a step skips the skin of contact."""
     return (
         f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"
         " it is met as deep as the step has taken it."

@@ -52,12 +52,7 @@ def describe_gate(
 
 
 def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) -> str:
-    """Returns `describe_gate`, or that the force of a device has not set in yet.
-
-    Args:
-        backend: The device that is held.
-        reading: Its newest reading.
-    """
+    """Returns `describe_gate`, or that the force of a device has not set in yet."""
     waits = isinstance(backend, SoftStartDevice) and backend.waits
     if waits and reading is not None and reading.gate == GateState.IDLE:
         return (
@@ -147,11 +142,7 @@ class StatusLine(LiveLine):
         self._haptic = haptic
 
     def end_tick(self, context: Context) -> None:
-        """Writes the line again, if it is time.
-
-        Args:
-            context: Context of the diagram after a tick.
-        """
+        """Writes the line again, if it is time."""
         self._context = context
         self.update()
 

@@ -52,16 +52,7 @@ def make_setup_message(
     site: DevicePlacement,
     locked: str,
 ) -> dict[str, Any]:
-    """Returns the message `hello`, ready for JSON.
-
-    Args:
-        changes: The scene, as it is and as its file has it.
-        name: Name of the scene.
-        meshcat_url: Address of the Meshcat that the page shows.
-        handles: Names of the possible holders of the handle, with their labels.
-        site: Place of the scene's device, with its limits.
-        locked: Reason why nothing may be changed; empty if changes are allowed.
-    """
+    """Returns the message `hello`, ready for JSON."""
     scene, file = changes.scene, changes.file
     return {
         "meshcat": meshcat_url,
@@ -133,17 +124,7 @@ class Cockpit:
         name: str,
         locked: str = "",
     ):
-        """Begins without a diagram.
-
-        Args:
-            page: The page, which the caller closes.
-            changes: The scene.
-            holding: Holder of the handle.
-            picture: The picture on the page.
-            advice: Checks of the scene's coupling.
-            name: Name of the scene.
-            locked: Reason why only the picture may be changed; empty if all may be.
-        """
+        """Begins without a diagram."""
         self.steering = Steering(changes, holding, picture, locked)
         self._page = page
         self._changes = changes
@@ -190,9 +171,6 @@ class Cockpit:
 
     def end_tick(self, context: Context) -> bool:
         """Notes a tick, talks with the page if it is time; to be called after a tick.
-
-        Args:
-            context: Context of the diagram.
 
         Returns:
             Whether the segment is to end: `Steering.take_change` has the reason.

@@ -46,14 +46,7 @@ class Segments:
         holding: Holding,
         meshcat: Meshcat,
     ):
-        """Begins with no tick.
-
-        Args:
-            haptic: Diagram of the cockpit's scene, with the backend that is held.
-            cockpit: Cockpit that steers the run.
-            holding: Holder of the handle.
-            meshcat: Meshcat to draw in.
-        """
+        """Begins with no tick."""
         self._haptic = haptic
         self._cockpit = cockpit
         self._steering = cockpit.steering

@@ -41,10 +41,6 @@ _RISE_S = 0.2
 def take_device(device: DeviceBackend, scene: Scene) -> SoftStartDevice:
     """Returns a device that sets in gently, within the limits of a scene.
 
-    Args:
-        device: Open device, closed with the one returned.
-        scene: Scene with the limits and the rate.
-
     Raises:
         SceneError: The device has no place, see `find_device_site`.
     """
@@ -80,14 +76,7 @@ class SoftStartDevice(DeviceBackend):
         max_torque_Nm: float,
         period_s: float,
     ):
-        """Begins without force.
-
-        Args:
-            device: Open device, closed with this.
-            max_force_N: Largest force that it shows, N.
-            max_torque_Nm: Largest torque that it shows, N·m.
-            period_s: The tick, s: one `write` in each.
-        """
+        """Begins without force."""
         self.device = device
         self.waits = True
         self._gentle_force_N = _GENTLE * max_force_N
@@ -205,13 +194,7 @@ class ForceOnRequest:
     """Lets the force of a taken device set in where somebody asks for it."""
 
     def __init__(self, device: SoftStartDevice, wants_it_now: Callable[[], bool]):
-        """Starts before the first tick.
-
-        Args:
-            device: Device that may wait.
-            wants_it_now: Function that tells, while it waits, whether to show the force
-                at once.
-        """
+        """Starts before the first tick."""
         self._device = device
         self._wants_it_now = wants_it_now
         self._could_show = False

@@ -179,10 +179,6 @@ class SceneChanges:
     def obey(self, request: dict[str, Any]) -> None:
         """Obeys a page's request.
 
-        Args:
-            request: A request that `read_page_request` returned, with one of
-                `SCENE_VERBS`.
-
         Raises:
             ChangeError: The change is not possible.
         """
@@ -264,9 +260,6 @@ class CouplingAdvice:
 
         A scene whose hand cannot hold the handle, as the path is out of its reach, can
         still run on a real device: that is a warning.
-
-        Args:
-            scene: Scene whose device and hand hold for all that are checked.
 
         Raises:
             SceneError: There is no such preset, or its model is no arm.

@@ -41,12 +41,7 @@ class PagePicture:
     """
 
     def __init__(self, meshcat: Meshcat, views: frozenset[str]):
-        """Begins without a diagram.
-
-        Args:
-            meshcat: Meshcat with the camera.
-            views: Names of the views that are shown at first.
-        """
+        """Begins without a diagram."""
         self._meshcat = meshcat
         self.views = {view: view in views for view in PICTURE_VIEWS}
         self._is_felt = True
@@ -73,9 +68,6 @@ class PagePicture:
 
     def obey(self, request: dict[str, Any]) -> bool:
         """Obeys a page's request, if it concerns the picture.
-
-        Args:
-            request: A request that `read_page_request` returned.
 
         Returns:
             Whether it did.
@@ -139,14 +131,7 @@ class Steering:
         picture: PagePicture,
         locked: str = "",
     ):
-        """Begins without a diagram.
-
-        Args:
-            changes: The scene.
-            holding: Holder of the handle.
-            picture: The picture on the page.
-            locked: Reason why only the picture may be changed; empty if all may be.
-        """
+        """Begins without a diagram."""
         self.changes = changes
         self._end_s = math.inf
         self._error, self._is_error_told = "", True
@@ -174,10 +159,6 @@ class Steering:
     def end_tick(self, root: Context, now_s: float) -> bool:
         """Moves values on; to be called after each tick.
 
-        Args:
-            root: Context of the diagram; its parameters may be changed.
-            now_s: The time, s.
-
         Returns:
             Whether the segment is to end: `take_change` has the reason.
         """
@@ -198,9 +179,6 @@ class Steering:
 
     def fall_back(self, why: str) -> bool:
         """Undoes all changes, after a run has failed with them.
-
-        Args:
-            why: Reason of the failure.
 
         Returns:
             Whether there were any, in a run that nobody feels: otherwise it is over.
@@ -229,12 +207,6 @@ class Steering:
         now_s: float,
     ) -> bool:
         """Obeys the requests of pages.
-
-        Args:
-            asked: The requests that `LivePage.act` returned.
-            root: Context of the diagram; its parameters may be changed.
-            X_WC: Pose of the page's camera.
-            now_s: The time, s.
 
         Returns:
             Whether there is anything new to tell.

@@ -87,9 +87,6 @@ def write_css(color: Color) -> str:
 def make_legend(has_friction: bool) -> list[dict[str, str]]:
     """Returns the meanings of the colors in a loop's picture.
 
-    Args:
-        has_friction: Whether friction is drawn.
-
     Returns:
         For each its `color`, as style sheets write it, and its `label`.
     """

@@ -20,9 +20,6 @@ def one_line(instance: Any) -> str:
     It is for a class's `__repr__`: arrays of up to seven numbers, numbers and texts are
     written out, larger arrays and collections counted, other objects named by their
     class.
-
-    Args:
-        instance: Instance of a dataclass.
     """
     shown = (
         f"{field.name}={brief(getattr(instance, field.name))}"
@@ -52,13 +49,7 @@ def brief(value: object) -> str:
 
 
 def count(number: int, noun: str, plural: str | None = None) -> str:
-    """Returns "1 piece", "2 pieces", "3,000 vertices".
-
-    Args:
-        number: Number of things.
-        noun: Noun for one of them.
-        plural: Plural of the noun, where it is not the noun with an s.
-    """
+    """Returns "1 piece", "2 pieces", "3,000 vertices"."""
     return f"{number:,} {noun if number == 1 else plural or f'{noun}s'}"
 
 

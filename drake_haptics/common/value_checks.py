@@ -10,23 +10,14 @@ Numbers = float | Sequence[float] | np.ndarray
 
 
 def check_positive(**values: Numbers) -> None:
-    """Raises ValueError unless all numbers are above 0 and finite.
-
-    Args:
-        **values: Number or array of each argument, by its name.
-    """
+    """Raises ValueError unless all numbers are above 0 and finite."""
     for name, value in values.items():
         if not np.all((np.asarray(value) > 0.0) & np.isfinite(value)):
             raise ValueError(f"{name} must be positive and finite, is {value}")
 
 
 def check_at_least(least: float, **values: Numbers) -> None:
-    """Raises ValueError unless no number is below a least one and all are finite.
-
-    Args:
-        least: The least number that is allowed.
-        **values: Number or array of each argument, by its name.
-    """
+    """Raises ValueError unless no number is below a least one and all are finite."""
     for name, value in values.items():
         if not np.all((np.asarray(value) >= least) & np.isfinite(value)):
             raise ValueError(

@@ -306,11 +306,7 @@ class DriverStatistics:
         return self._ticks
 
     def add_tick(self, reading: DeviceReading) -> None:
-        """Counts a tick.
-
-        Args:
-            reading: Reading of the device, with the wrench that it was made to show.
-        """
+        """Counts a tick."""
         F_Ho_B = reading.F_Ho_B.tolist()
         self._ticks += 1
         torque, force = math.hypot(*F_Ho_B[:3]), math.hypot(*F_Ho_B[3:])

@@ -52,12 +52,7 @@ MODELS = {
 
 
 def find_sources(model: str, meshes: Path | None) -> list[str]:
-    """Returns the sources of a key of `MODELS`: `OWN`, or the name of a file, or both.
-
-    Args:
-        model: A key of `MODELS`.
-        meshes: Folder of real meshes.
-    """
+    """Returns the sources of a key of `MODELS`: `OWN`, the name of a file, or both."""
     source = MODELS[model]
     found = [OWN] if source.own else []
     if meshes is not None and (meshes / source.file).is_file():
@@ -78,11 +73,6 @@ def check_folder(meshes: Path | None) -> None:
 
 def load_model(model: str, source: str, meshes: Path | None) -> Mesh:
     """Returns the mesh of a model.
-
-    Args:
-        model: A key of `MODELS`.
-        source: A source from `find_sources`.
-        meshes: Folder of real meshes.
 
     Raises:
         drake_haptics.geometry.mesh.mesh.MeshError: The file cannot be treated.
@@ -140,9 +130,6 @@ def wrench_path(num_poses: int) -> np.ndarray:
     It comes near, presses 0.2 mm into the 17 of them, slides up along the tubes by
     150 mm while it rocks a little, and leaves. If it takes 3 s, nothing moves faster
     than 0.15 m/s.
-
-    Args:
-        num_poses: Number of poses, at equal times.
 
     Returns:
         X_WT (num_poses, 4, 4).

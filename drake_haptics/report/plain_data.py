@@ -52,10 +52,6 @@ def read_figures(kind: type[_Figures], data: Any) -> _Figures:
 
     Where a field is a number, null stands for NaN, and the words of `name_number` for
     their numbers.
-
-    Args:
-        kind: The dataclass, of dataclasses, lists and tuples of them, and plain data.
-        data: The plain data.
     """
     figures: _Figures = _read(kind, data)
     return figures

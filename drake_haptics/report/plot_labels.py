@@ -115,13 +115,6 @@ def _choose_place(
     """Returns the first place that meets no label, and the fewest of the rest.
 
     Hiding a marker or line is worse than a line across a label.
-
-    Args:
-        places: Places in order; the last one is returned if each meets a label.
-        boxes: Boxes of labels.
-        leaders: Lines from the same labels to their points.
-        markers: Boxes of the points.
-        lines: Lines that are drawn.
     """
     chosen: _Place | None = None
     least = math.inf

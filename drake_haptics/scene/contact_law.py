@@ -48,12 +48,6 @@ def check_constraint_law(
 ) -> None:
     """Refuses keys that do nothing under the constraint law.
 
-    Args:
-        contact: Contact parameters under that law.
-        effects: Effects, as in a scene.
-        sheds_load: Whether ticks have a budget.
-        materials: Materials of the objects, by their keys in messages.
-
     Raises:
         SceneError: A key is given that this law does not have; the message says what to
             do.

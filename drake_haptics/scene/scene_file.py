@@ -100,10 +100,6 @@ def _list_places(folder: Path) -> Iterator[tuple[Path, str]]:
 def place_files(scene: Scene, folder: Path) -> None:
     """Makes the paths of a scene's meshes and preset valid from any folder.
 
-    Args:
-        scene: Scene to change in place.
-        folder: Folder at which relative paths begin.
-
     Raises:
         SceneError: A mesh does not exist, or no package has that name.
     """

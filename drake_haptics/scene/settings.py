@@ -137,10 +137,6 @@ def list_keys(schema: type, where: str = "") -> list[str]:
     """Returns the key of every single value, like `contact.tolerance_m` of a `Scene`.
 
     Lists, such as those of objects and waypoints, are one value each.
-
-    Args:
-        schema: A dataclass.
-        where: Prefix of the keys.
     """
     keys: list[str] = []
     for name, kind in typing.get_type_hints(schema).items():

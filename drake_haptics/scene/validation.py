@@ -100,12 +100,6 @@ def check_rendering(
 ) -> None:
     """Checks the parts of a scene with which a body of a plant is rendered.
 
-    Args:
-        contact: Law of contact and its parameters, as in a scene.
-        materials: Materials of bodies, by their names.
-        effects: Effects, as in a scene.
-        coupling: Gains of the coupling; None without a handle.
-
     Raises:
         SceneError: A value is out of its range, or does nothing under this law.
     """
@@ -186,10 +180,6 @@ def _check_contact(contact: ContactParameters) -> None:
 
 def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
     """Checks that the ticks between two queries are a whole number.
-
-    Args:
-        rate_hz: contact.query_rate_hz, Hz.
-        ticks_per_s: device.rate_hz, Hz.
 
     Raises:
         SceneError: `rate_hz` is too low, or is not `ticks_per_s` divided by a whole

@@ -82,12 +82,7 @@ def transfer_context(
 
 
 def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
-    """Returns X_WH, the pose of the handle.
-
-    Args:
-        haptic: Return value of `BuildHapticDiagram`.
-        root: Context of its diagram.
-    """
+    """Returns X_WH, the pose of the handle."""
     device = haptic.loop.device
     port = device.GetOutputPort("X_WH")
     return vector_to_pose(port.Eval(device.GetMyContextFromRoot(root)))

@@ -27,12 +27,7 @@ from drake_haptics.tick_log.tick_log import TickLog
 
 
 def find_changes(before: str, after: str) -> list[str]:
-    """Returns the differences of two scenes, like `hand.grip: light, firm`.
-
-    Args:
-        before: Scene, YAML.
-        after: Other scene, YAML.
-    """
+    """Returns the differences of two scenes, like `hand.grip: light, firm`."""
     old, new = (dict(_flatten(yaml.safe_load(text), "")) for text in (before, after))
     return [
         f"{key}: {old.get(key, 'not there')}, {new.get(key, 'not there')}"
@@ -269,13 +264,7 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
 
 
 def make_title(a: TickLog, b: TickLog, names: tuple[str, str]) -> str:
-    """Returns a title: the names of two runs, and the differences of their scenes.
-
-    Args:
-        a: One run.
-        b: Another one.
-        names: Names of the runs.
-    """
+    """Returns a title: the names of two runs, and the differences of their scenes."""
     changes = find_changes(a.header.scene, b.header.scene)
     words = "; ".join(changes) if changes else "the same scene"
     if len(changes) > _MOST_CHANGES:

@@ -65,10 +65,6 @@ def pack_header(header: TickLogHeader) -> bytes:
 def read_header(stream: BinaryIO, name: str) -> TickLogHeader:
     """Reads the head of a log; the stream is then at the first block.
 
-    Args:
-        stream: The file, at its start.
-        name: Name of the file, for messages.
-
     Raises:
         TickLogError: The file is no log, of another version, or damaged.
     """

@@ -66,10 +66,6 @@ def summarize_log(
 ) -> LogSummary:
     """Reads a log, block by block, and counts.
 
-    Args:
-        path: The file.
-        progress: Called with the current work and its share that is done, in [0, 1].
-
     Raises:
         TickLogError: It is no log, of another version, or its head is damaged.
         OSError: It cannot be opened.

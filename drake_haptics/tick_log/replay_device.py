@@ -31,9 +31,6 @@ class ReplayDevice(DeviceBackend):
     def __init__(self, log: TickLog):
         """Opens a log.
 
-        Args:
-            log: The result of `read_tick_log`.
-
         Raises:
             DeviceError: The log has no first tick.
         """

@@ -167,9 +167,6 @@ class TickLogReader:
     def __init__(self, path: str | os.PathLike[str]):
         """Reads the head.
 
-        Args:
-            path: The file.
-
         Raises:
             TickLogError: It is no log, of another version, or its head is damaged.
             OSError: It cannot be opened.
@@ -188,9 +185,6 @@ class TickLogReader:
         """Yields the ticks of every sound block, in order.
 
         After the last one, `gaps` and `damaged_blocks` tell what is missing.
-
-        Args:
-            progress: Called with the current work and its share done, in [0, 1].
         """
         self.gaps, self.damaged_blocks = [], 0
         next_tick, next_share = 0, 0.0

@@ -123,11 +123,7 @@ class FrameMaker:
     """Averages and counts over packets; see `make`."""
 
     def __init__(self, shed_stages: Sequence[str] = ()):
-        """Starts with no tick.
-
-        Args:
-            shed_stages: Names of the stages that ticks that take too long leave out.
-        """
+        """Starts with no tick."""
         self._shed_stages = shed_stages
         self._trace = Trace()
         self._tick_s: deque[float] = deque(maxlen=_LATEST)

@@ -153,10 +153,6 @@ class PageHandle(DeviceBackend):
     def obey(self, asked: dict[str, Any], X_WC: RigidTransform) -> bool:
         """Obeys a page's request, and counts it.
 
-        Args:
-            asked: A request as `read_page_request` returns it.
-            X_WC: Pose of the page's camera.
-
         Returns:
             Whether it was for a handle; if not, it is not counted.
         """

@@ -162,11 +162,7 @@ class PageLink:
         self._socket.close()
 
     def close(self, why: str = "The run has ended.") -> None:
-        """Ends the page and its process; may be called again.
-
-        Args:
-            why: Reason that the pages are told.
-        """
+        """Ends the page and its process; may be called again."""
         assert self._process.stdin is not None
         if self._process.stdin.closed:
             return

@@ -29,12 +29,7 @@ class PageCamera:
     """
 
     def __init__(self, meshcat: Meshcat, X_WC: RigidTransform):
-        """Starts at a pose.
-
-        Args:
-            meshcat: The Meshcat that the page shows.
-            X_WC: Pose before the page tells.
-        """
+        """Starts at a pose."""
         self._meshcat = meshcat
         self._set(X_WC)
 
@@ -115,12 +110,6 @@ class LivePage:
     ):
         """Starts the page's process, without waiting for it.
 
-        Args:
-            meshcat: The Meshcat that the page shows.
-            X_WC: Pose of the page's camera before it tells.
-            listener: The page's port, of `open_page_port`; the first free one where
-                not given.
-
         Raises:
             HapticsError: No port is available.
         """
@@ -177,11 +166,7 @@ class LivePage:
         return heard
 
     def close(self, why: str = "The run has ended.") -> None:
-        """Ends the page; may be called again.
-
-        Args:
-            why: Reason that the pages are told.
-        """
+        """Ends the page; may be called again."""
         self._link.close(why)
         self.camera.close()
 

@@ -47,13 +47,7 @@ class PageProcess:
     """Turns the loop's packets into messages for pages, and passes requests on."""
 
     def __init__(self, listener: socket.socket, link: socket.socket, origin: str):
-        """Begins with no page.
-
-        Args:
-            listener: Socket that listens on the page's port.
-            link: Socket of datagrams to the loop.
-            origin: Origin of the Meshcat in the page.
-        """
+        """Begins with no page."""
         self._link = link
         self._server = PageServer(listener, origin, self._forward)
         self._frames = FrameMaker()

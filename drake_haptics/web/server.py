@@ -116,11 +116,7 @@ class PageServer:
         self.say(message)
 
     def say(self, message: str) -> None:
-        """Tells every page something that later ones need not know.
-
-        Args:
-            message: JSON text.
-        """
+        """Tells every page something that later ones need not know."""
         broadcast(self._pages, message)
 
     def show(self, frame: dict[str, Any]) -> None:

@@ -146,10 +146,6 @@ class HapticPicture:
     def show(self, view: str, visible: bool) -> None:
         """Requests that a view is shown or hidden, which `draw_views` then does.
 
-        Args:
-            view: One of `PICTURE_VIEWS`.
-            visible: Whether the view is to be seen.
-
         Raises:
             ValueError: There is no such view.
         """

@@ -176,14 +176,7 @@ class DrawnPieces:
         pieces: Sequence[ConvexPolytope],
         alpha: float,
     ):
-        """Sends nothing yet.
-
-        Args:
-            meshcat: Meshcat to draw in.
-            path: Folder in the scene tree.
-            pieces: Pieces to draw, in the frame of the folder.
-            alpha: Opacity of the facets on the mesh.
-        """
+        """Sends nothing yet."""
         self._meshcat = meshcat
         self._path = path
         self._pieces = pieces

@@ -43,9 +43,6 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
     The processes share no lock, thread or state of Drake with this process. They end
     soon after this process dies in whatever way, and at once if an exception leaves the
     context; Ctrl-C in a terminal is left to this process.
-
-    Args:
-        most_useful: Largest number of processes to start.
     """
     pool = ProcessPoolExecutor(
         min(cpu_count(), most_useful),

@@ -185,9 +185,6 @@ class StudyStore:
 
         Lines that are torn or damaged are skipped with a `StudyWarning`.
 
-        Args:
-            tasks: Exact JSON of each task.
-
         Returns:
             Exact JSON of the results that are there, by task.
 

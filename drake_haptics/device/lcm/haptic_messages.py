@@ -33,12 +33,7 @@ _QUATERNION_SLACK = 0.01
 
 
 def member(lcm_type: str, length: int | None = None) -> Any:
-    """Returns the dataclass field of a message's member, zero by default.
-
-    Args:
-        lcm_type: Type of the member in the .lcm file.
-        length: Length of an array; None for a single number.
-    """
+    """Returns the dataclass field of a message's member, zero by default."""
     zero = _ZEROS.get(lcm_type, 0)
     return field(
         default=zero if length is None else (zero,) * length,

@@ -230,10 +230,6 @@ def describe_outcome(choice: BudgetChoice, name: str) -> str:
 def describe_sacrifices(choice: BudgetChoice, scene: Scene) -> list[str]:
     """Describes each knob that was turned: its old and new value, and the error.
 
-    Args:
-        choice: Choice to describe.
-        scene: Scene before the change.
-
     Returns:
         A sentence for each knob, and one for all together if there are several.
     """

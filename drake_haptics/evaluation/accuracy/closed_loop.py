@@ -59,10 +59,6 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
     included, because a slower rate creates more of it; the account of the whole loop is
     not, because there dampers hide what another part creates.
 
-    Args:
-        scene: Scene to run in its simulated hand.
-        duration_s: Simulated time, s.
-
     Returns:
         Energy, J; infinite if the loop diverges.
 
@@ -94,10 +90,6 @@ def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
     """Finds the largest stable stiffness of a coupling, held against its contact.
 
     It is the translational one at which an eigenvalue of one tick reaches magnitude 1.
-
-    Args:
-        scene: Scene, whose other gains stay.
-        place: Place where its hand stops.
     """
     if place.time_s is None:
         return StableStiffness(None, place.failure_reason)

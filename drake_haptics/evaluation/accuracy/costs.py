@@ -65,10 +65,6 @@ def time_in_turns(scenes: Sequence[Scene], duration_s: float) -> list[TickTimes]
     tick takes longer than in a loop that never waits. A disturbance of the machine
     affects all scenes alike, so that the ratios of their times hold.
 
-    Args:
-        scenes: Scenes to run, each from its start.
-        duration_s: Simulated duration of each scene, s.
-
     Raises:
         RunError: A loop diverges.
         KeyboardInterrupt: Ctrl-C is pressed.
@@ -180,9 +176,6 @@ def time_native(
 
     A tick's time is that of the middle of several passes, so that the percentiles are
     free of disturbances.
-
-    Args:
-        parts: Queries to the core, each with the motion of its tool.
     """
     passes: list[list[np.ndarray]] = [[] for _ in parts]
     begin_s = time.perf_counter()

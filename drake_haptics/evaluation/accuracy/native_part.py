@@ -83,11 +83,7 @@ class ContactSearch:
     """Looks for contacts tick by tick, as the systems of a loop do."""
 
     def __init__(self, part: NativePart):
-        """Begins before the first tick.
-
-        Args:
-            part: Queries to the core.
-        """
+        """Begins before the first tick."""
         self._every = part.query_every
         self._tracker = _core.SceneTracker(
             part.tool, part.objects, part.search_m, part.depth, part.max_walk_steps

@@ -128,9 +128,6 @@ def find_bend(front: Sequence[tuple[float, float]]) -> int | None:
     It is the first knee, if there is one; a front that is nearly straight has a bend
     and no knee.
 
-    Args:
-        front: Points as for `find_knee_points`.
-
     Returns:
         The index; None for fewer than three points, or if no point is below the line
         between the ends.

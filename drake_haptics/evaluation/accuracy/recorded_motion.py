@@ -57,9 +57,6 @@ class RecordedMotion:
     def find_ticks(self, period_s: float) -> list[tuple[int, int]]:
         """Returns the ticks of a loop that fall on this motion.
 
-        Args:
-            period_s: Period of the loop's ticks, s.
-
         Returns:
             Each row at which the loop has a new tick, with the number of its last tick
             up to that row.
@@ -160,10 +157,6 @@ def replay_tool(scene: Scene, motion: RecordedMotion) -> ToolReplay:
 
     The loop is open: a wrong wrench does not change the motion. At a row of the motion
     at which the scene has no tick, the last wrench holds, as in the loop.
-
-    Args:
-        scene: Scene of the contacts.
-        motion: Motion from any run.
 
     Raises:
         SceneError: The scene cannot be built.

@@ -166,14 +166,7 @@ def make_row(
     is_scene: bool,
     done: Sequence[tuple[Task, Mapping[str, Any]]],
 ) -> Row:
-    """Returns the row of a setting.
-
-    Args:
-        setting: Setting of the row.
-        measured: Setting that was measured and makes the same scene.
-        is_scene: Whether this is the scene as it is.
-        done: All tasks of the study with their results.
-    """
+    """Returns the row of a setting."""
     own: dict[str, list[Mapping[str, Any]]] = {
         "errors": [],
         "instructions": [],
@@ -223,14 +216,7 @@ def _find_times(
     done: Sequence[tuple[Task, Mapping[str, Any]]],
     is_scene: bool,
 ) -> TickTimes:
-    """Returns the times of a setting by its ratio to the scene that ran beside it.
-
-    Args:
-        what: Task that timed the setting, "native" or "ticks".
-        own: Result of the task.
-        done: All tasks of the study with their results.
-        is_scene: Whether the setting is the scene as it is.
-    """
+    """Returns the times of a setting by its ratio to the scene that ran beside it."""
     beside = [
         TickTimes(**result["scene"])
         for task, result in done

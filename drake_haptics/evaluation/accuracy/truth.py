@@ -121,10 +121,6 @@ def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
 
     The wrench is the finest that the scene's own physics gives; the depth is found
     without it, see `calc_exact_distance`.
-
-    Args:
-        reference: Scene with its finest exact setting.
-        motion: Motion of its tool.
     """
     haptic = build_without_scene_warnings(reference)
     p_TTcm = haptic.loop.haptic_tool.dynamics.p_TTcm

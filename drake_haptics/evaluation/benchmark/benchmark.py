@@ -127,13 +127,6 @@ def run_benchmarks(
 ) -> BenchFigures:
     """Measures this package and the libraries that are installed, in this thread.
 
-    Args:
-        parts: Parts to run, of `PARTS`.
-        effort: Extent of the measurement.
-        meshes: Folder of real meshes for the scenes, see `scene_makers`.
-        progress: Callback before each step, see `Progress`.
-        outside: Further libraries to measure, in every part.
-
     Raises:
         HapticsError: The folder has none of the meshes.
     """

@@ -168,11 +168,7 @@ class PiecePairs:
     def find(
         self, X_WT: NDArray[np.float64]
     ) -> tuple[list[OutsideContact], NDArray[np.int32]]:
-        """Returns contacts within the tolerance and their objects, in ascending order.
-
-        Args:
-            X_WT: (4, 4) pose of the tool.
-        """
+        """Returns contacts within the tolerance and their objects, ascending."""
         (A_low, A_high), (B_low, B_high) = self._A_boxes.pose(X_WT), self._B_boxes
         apart = np.maximum(B_low[:, None] - A_high, A_low - B_high[:, None])
         near = np.argwhere(np.all(apart < self._tolerance_m, axis=2))

@@ -47,11 +47,6 @@ def find_truth(
     apart as well as in depth. Gaps of the libraries' normals, found by going through
     all vertices, therefore judge all libraries alike: a library that finds a larger gap
     shows that the others are wrong.
-
-    Args:
-        pair: The bodies.
-        X_WA: (n, 4, 4) poses of A; B is at the world's origin.
-        answers: Answers of each library.
     """
     normals = np.stack([a.nhat_BA_W for a in answers])
     gaps = np.stack([support_gaps(pair, X_WA, n) for n in normals])
@@ -116,12 +111,6 @@ def run_pair(
 
     The libraries take turns on each press, in rotating order, all in this thread.
     The first frame of a press starts from nothing and is left out.
-
-    Args:
-        pair: The bodies.
-        libraries: Libraries to measure.
-        presses: Number of presses, see `make_presses`.
-        repeats: Number of runs of each press.
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []

@@ -30,10 +30,6 @@ def ratios_to_fastest(
 
     The fastest library of a pair is the one with the smallest figure in the column
     among those that are not this package. Pairs without such a library have no ratio.
-
-    Args:
-        figures: Figures of all libraries on all pairs, those of a pair together.
-        column: The figure.
     """
     ratios: dict[str, list[float]] = {}
     for _, group in groupby(figures, key=lambda f: (f.kind, f.size)):
@@ -55,13 +51,6 @@ def growth(
     figures: Sequence[PairFigures], library: str, column: Column, small: int, large: int
 ) -> float:
     """Returns the factor by which a library's figure grows with the bodies' size.
-
-    Args:
-        figures: Figures of all pairs.
-        library: Name of the library.
-        column: The figure.
-        small: Vertices of the smaller bodies.
-        large: Vertices of the larger bodies.
 
     Returns:
         The geometric mean over the kinds; NaN if a size was not run.

@@ -117,10 +117,6 @@ def make_presses(pair: PairShape, count: int) -> list[Press]:
     fastest where the center rests. At its deepest the center has gone 20 % of the
     offset at which the bodies touch in that direction and attitude; it starts as far
     outside.
-
-    Args:
-        pair: The bodies.
-        count: Number of presses.
     """
     rng = np.random.default_rng([pair.size, *pair.kind.encode()])
     return [_press(pair, rng) for _ in range(count)]

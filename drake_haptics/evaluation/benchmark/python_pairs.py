@@ -48,12 +48,6 @@ def run_python_pair(
 
     Both sides get a (4, 4) pose and give the distance, in turns on each press. Coal
     needs its own pose object, which is part of its query.
-
-    Args:
-        pair: The bodies.
-        presses: Number of presses, see `make_presses`.
-        repeats: Number of runs of each press.
-        outside: Libraries that were named for this run.
     """
     bodies = pair.A_vertices, pair.B_vertices
     queries: dict[str, Callable[[np.ndarray], object]] = {

@@ -162,11 +162,6 @@ def run_scene(
 
     The libraries take turns on each motion, in rotating order, all in this thread.
     The first tick of a motion starts from nothing and is left out.
-
-    Args:
-        problem: The scene.
-        queries: Library name -> the scene in it.
-        repeats: Number of runs of each motion.
     """
     names = list(queries)
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}

@@ -85,12 +85,6 @@ def make_touches(
     slides 10 mm sideways and back while it sways by 0.1 rad, and leaves: below
     0.1 m/s and 1 rad/s.
 
-    Args:
-        tool: The body that moves; it touches with random places of its surface.
-        target: The body that rests at the world's origin.
-        count: Number of motions.
-        seed: Seed of the random numbers.
-
     Returns:
         Motions, each (n, 4, 4) poses of the tool.
     """

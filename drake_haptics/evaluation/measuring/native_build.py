@@ -81,10 +81,6 @@ def load_mujoco_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
 def open_mjcf(new: Callable[..., int | None], mjcf: str) -> int:
     """Returns the handle of a model in an adapter of MuJoCo.
 
-    Args:
-        new: The adapter's function.
-        mjcf: The model.
-
     Raises:
         RuntimeError: MuJoCo refuses the model.
     """
@@ -105,15 +101,7 @@ def add_pieces(
     decomposition: Decomposition,
     X_WO: np.ndarray,
 ) -> None:
-    """Hands convex pieces to a scene in an adapter of coal.
-
-    Args:
-        add: The adapter's function.
-        scene: The handle of the scene.
-        owner: Number by which the adapter tells bodies apart.
-        decomposition: The pieces.
-        X_WO: (4, 4) pose of their body, m.
-    """
+    """Hands convex pieces to a scene in an adapter of coal."""
     for piece in decomposition.pieces:
         vertices = np.ascontiguousarray(piece.vertices)
         fans = [

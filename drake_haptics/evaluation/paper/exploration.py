@@ -129,10 +129,6 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
 
     The handle does not yield, as in a firm hand; the coupling between it and the tool
     does.
-
-    Args:
-        scenario: Scenario to build.
-        seconds: Duration of the path that the handle follows, s.
     """
     X_TH = RigidTransform(scenario.p_TH)
     X_WH, V_WH = sample_handle(scenario.path, X_TH, seconds)

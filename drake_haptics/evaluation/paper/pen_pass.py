@@ -195,9 +195,6 @@ def plan_pen_pass(seconds: float = _SECONDS) -> np.ndarray:
 
     Its tip runs over the sphere in an arc, rising and falling through its surface,
     while the pen leans to one side and the other.
-
-    Args:
-        seconds: Duration of the pass, s.
     """
     phase = np.linspace(0.0, 1.0, round(seconds * _RATE_HZ))
     X_WA = np.tile(np.eye(4), (len(phase), 1, 1))

@@ -37,12 +37,7 @@ _METHOD = {
 
 
 def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
-    """Draws a profile on a figure of its own, which no window shows.
-
-    Args:
-        profile: Profile of a run.
-        figures: Figures of it, from `sum_up`.
-    """
+    """Draws a profile on a figure of its own, which no window shows."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_PROFILE_INCH, layout="constrained")

@@ -189,10 +189,6 @@ def _draw_pass(passed: PenPass) -> Picture:
 def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:
     """Writes the page as one HTML file, and each picture beside it as PNG.
 
-    Args:
-        evaluation: Evaluation from `evaluate_paper`.
-        path: Path of the HTML file; pictures are named after it.
-
     Returns:
         Paths of the pictures.
 

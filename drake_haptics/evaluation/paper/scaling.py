@@ -48,11 +48,7 @@ class PairScaling:
 
 
 def measure_pair_scaling(ticks: int) -> PairScaling:
-    """Slides brushes of 1 to 64 teeth over a plate, all teeth 0.5 mm deep.
-
-    Args:
-        ticks: Ticks of each motion.
-    """
+    """Slides brushes of 1 to 64 teeth over a plate, all teeth 0.5 mm deep."""
     plate = make_plate()
     motion = plan_slide(ticks)
     brushes = [make_brush(teeth) for teeth in NUM_TEETH]
@@ -76,11 +72,6 @@ def make_brush(
 
     A tooth is convex, has eight sides, and is 10 mm high. It is as wide as a third of
     the spacing, and 2 mm at most.
-
-    Args:
-        teeth: Number of the teeth, which stand row by row about the origin.
-        across: Number of the teeth in a row.
-        spacing_m: Distance of two neighbors, m.
     """
     row, column = np.divmod(np.arange(teeth), across)
     places = (np.column_stack([column, row]) - (across - 1) / 2) * spacing_m
@@ -137,9 +128,6 @@ class ForceScaling:
 
 def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
     """Presses brushes of 1 to 256 teeth, all 40 mm wide, into a plate.
-
-    Args:
-        repeats: Repeats of each computation.
 
     Returns:
         Figures of the paper's clusters (of 8 mm), and of shared stiffness.

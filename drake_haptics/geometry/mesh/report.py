@@ -236,12 +236,7 @@ def length(meters: float) -> str:
 
 
 def _power(value: float, exponent: int) -> str:
-    """Writes an area or a volume in the unit that people would use for it.
-
-    Args:
-        value: Area or volume, m² or m³.
-        exponent: Exponent of the unit, 2 or 3.
-    """
+    """Writes an area or a volume in the unit that people would use for it."""
     mark = {2: "²", 3: "³"}[exponent]
     # From a liter on, 0.001 m³ reads better than 1000 cm³.
     for least_m, unit, per_m in ((0.1, "m", 1), (0.01, "cm", 100)):

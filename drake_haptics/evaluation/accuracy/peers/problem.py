@@ -76,13 +76,7 @@ class Answer(Protocol):
 def make_peer_problem(
     haptic: HapticDiagram, motion: RecordedMotion, truth: Truth
 ) -> PeerProblem:
-    """Returns the problem of a scene for all libraries.
-
-    Args:
-        haptic: Diagram of the scene.
-        motion: Motion of its tool.
-        truth: Truth on that motion.
-    """
+    """Returns the problem of a scene for all libraries."""
     part = make_native_part(haptic)
     return PeerProblem(
         scene=haptic.scene,

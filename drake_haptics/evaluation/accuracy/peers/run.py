@@ -102,12 +102,6 @@ def run_peers(
     is not counted), from Python around the one call to Drake. A tick's time is that of
     the middle of several passes.
 
-    Args:
-        scene: Scene whose motion was recorded.
-        motion: Motion of its tool.
-        truth: Truth on that motion.
-        progress: Callback that takes the current work and the share done, in [0, 1].
-
     Returns:
         A row for each of `METHODS`, with the reason if a library is absent or fails.
     """
@@ -169,11 +163,6 @@ def add_peers(
     progress: Callable[[str, float], None] | None = None,
 ) -> AccuracyStudy:
     """Returns a study with a row for each method of another library.
-
-    Args:
-        study: Study of the scene.
-        scene: Scene whose motion is recorded again, the same as before.
-        progress: Callback that takes the current work and the share done, in [0, 1].
 
     Raises:
         RunError: The scene diverges.

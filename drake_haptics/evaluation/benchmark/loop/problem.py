@@ -125,12 +125,7 @@ class Loop(Protocol):
 
 
 def make_problem(name: str = "cup_spoon", duration_s: float = 4.0) -> LoopProblem:
-    """Returns a shipped scene without effects, with the motion of its hand.
-
-    Args:
-        name: Name of the scene.
-        duration_s: Duration of the motion, s.
-    """
+    """Returns a shipped scene without effects, with the motion of its hand."""
     scene = load_scene(find_scene(name))
     haptic = build_without_scene_warnings(scene)
     motion = record_motion(scene, duration_s)

@@ -51,12 +51,7 @@ _OWN: dict[str, Callable[..., Loop]] = {
 def make_loops(
     problem: LoopProblem, outside: Sequence[type[OutsideLibrary]] = ()
 ) -> tuple[dict[str, Loop], dict[str, str]]:
-    """Returns name -> loop, this package's first; and library -> why it is missing.
-
-    Args:
-        problem: Problem that the loops are given.
-        outside: Libraries that were named for this run.
-    """
+    """Returns name -> loop, this package's first; and library -> why it is missing."""
     loops: dict[str, Loop] = {
         f"{name}{PACED}": make(problem, paced=True) for name, make in _OWN.items()
     }

@@ -66,13 +66,7 @@ class SimulatedLoop(ABC):
     """A loop whose ticks Drake's Simulator makes."""
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Keeps the problem of the loop.
-
-        Args:
-            problem: Problem of the loop.
-            paced: Whether ticks that are timed wait for the clock, as for a device;
-                else each follows the one before at once.
-        """
+        """Keeps the problem of the loop."""
         self._problem = problem
         self._paced = paced
 

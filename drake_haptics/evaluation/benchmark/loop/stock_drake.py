@@ -53,13 +53,7 @@ class StockLoop:
     """
 
     def __init__(self, problem: LoopProblem, solver: str, *, paced: bool = False):
-        """Builds the diagram.
-
-        Args:
-            problem: Problem of the loop.
-            solver: Contact solver for which `has_solver` is true.
-            paced: Whether ticks that are timed wait for the clock.
-        """
+        """Builds the diagram."""
         self._problem = problem
         self._paced = paced
         builder = DiagramBuilder()
