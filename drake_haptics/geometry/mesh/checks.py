@@ -11,7 +11,7 @@ import numpy as np
 
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
-from drake_haptics.geometry.mesh.report import Finding, Severity, length
+from drake_haptics.geometry.mesh.report import Findings, Severity, length
 from drake_haptics.geometry.mesh.topology import Edges, connected_labels, find_edges
 from drake_haptics.geometry.mesh.units import guess_unit
 
@@ -28,27 +28,24 @@ _SMALL_HOLES = (
 _LARGEST_COORDINATE_M = 1e9
 
 
-def check_branching(triangles: np.ndarray, findings: list[Finding]) -> None:
+def check_branching(triangles: np.ndarray, findings: Findings) -> None:
     """Reports edges with three or more triangles, before the parts are cut there."""
     branching = int((find_edges(triangles).count > 2).sum())
-    if branching:
-        findings.append(
-            Finding(
-                "non-manifold-edges",
-                Severity.DEFECT,
-                branching,
-                count(
-                    branching,
-                    "edge joins three or more triangles",
-                    "edges join three or more triangles",
-                ),
-                "the surface is cut there into separate parts",
-            )
-        )
+    findings.add(
+        "non-manifold-edges",
+        Severity.DEFECT,
+        branching,
+        count(
+            branching,
+            "edge joins three or more triangles",
+            "edges join three or more triangles",
+        ),
+        "the surface is cut there into separate parts",
+    )
 
 
 def check_holes(
-    triangles: np.ndarray, component: np.ndarray, findings: list[Finding]
+    triangles: np.ndarray, component: np.ndarray, findings: Findings
 ) -> None:
     """Reports open edges and their loops; components must share no vertex."""
     edges = find_edges(triangles)
@@ -60,17 +57,15 @@ def check_holes(
     open_parts = len(
         np.unique(component[is_open[edges.of_halfedge.reshape(-1, 3)].any(axis=1)])
     )
-    findings.append(
-        Finding(
-            "holes",
-            Severity.DEFECT,
-            num_open,
-            f"{count(num_open, 'open edge')} {'forms' if num_open == 1 else 'form'} "
-            f"{count(len(rims), 'rim')} of holes or sheets in "
-            f"{count(open_parts, 'part')}",
-            "left open; these parts bound no solid, their pieces are one-sided. To "
-            f"close holes: {_SMALL_HOLES if max(rims) <= 4 else _HOLES}",
-        )
+    findings.add(
+        "holes",
+        Severity.DEFECT,
+        num_open,
+        f"{count(num_open, 'open edge')} {'forms' if num_open == 1 else 'form'} "
+        f"{count(len(rims), 'rim')} of holes or sheets in "
+        f"{count(open_parts, 'part')}",
+        "left open; these parts bound no solid, their pieces are one-sided. To "
+        f"close holes: {_SMALL_HOLES if max(rims) <= 4 else _HOLES}",
     )
 
 
@@ -87,43 +82,35 @@ def check_components(
     orientable: np.ndarray,
     closed: np.ndarray,
     solid: np.ndarray,
-    findings: list[Finding],
+    findings: Findings,
 ) -> None:
     """Reports many components, one-sided surfaces and solids without volume."""
     twisted = int((~orientable).sum())
-    if twisted:
-        findings.append(
-            Finding(
-                "not-orientable",
-                Severity.DEFECT,
-                twisted,
-                f"{count(twisted, 'part')} {'has' if twisted == 1 else 'have'} only"
-                " one side, like a Möbius strip",
-                "left as wound; they bound no solid, their pieces are one-sided",
-            )
-        )
+    findings.add(
+        "not-orientable",
+        Severity.DEFECT,
+        twisted,
+        f"{count(twisted, 'part')} {'has' if twisted == 1 else 'have'} only"
+        " one side, like a Möbius strip",
+        "left as wound; they bound no solid, their pieces are one-sided",
+    )
     hollow = int((closed & ~solid).sum())
-    if hollow:
-        findings.append(
-            Finding(
-                "no-volume",
-                Severity.DEFECT,
-                hollow,
-                f"{count(hollow, 'closed part')} "
-                f"{'encloses' if hollow == 1 else 'enclose'} no volume (a sheet folded"
-                " on itself)",
-                "left as they are; they bound no solid, their pieces are one-sided",
-            )
-        )
+    findings.add(
+        "no-volume",
+        Severity.DEFECT,
+        hollow,
+        f"{count(hollow, 'closed part')} "
+        f"{'encloses' if hollow == 1 else 'enclose'} no volume (a sheet folded"
+        " on itself)",
+        "left as they are; they bound no solid, their pieces are one-sided",
+    )
     if len(closed) > 1:
-        findings.append(
-            Finding(
-                "many-parts",
-                Severity.NOTE,
-                len(closed),
-                f"{count(len(closed), 'part')} are not connected to each other",
-                "each is treated as a body of its own",
-            )
+        findings.add(
+            "many-parts",
+            Severity.NOTE,
+            len(closed),
+            f"{count(len(closed), 'part')} are not connected to each other",
+            "each is treated as a body of its own",
         )
 
 
@@ -131,7 +118,7 @@ def check_size(
     extent: np.ndarray,
     meters_per_unit: float,
     ignored_unit: str | None,
-    findings: list[Finding],
+    findings: Findings,
 ) -> None:
     """Questions the unit when the size is unlike anything that a hand touches.
 
@@ -142,14 +129,12 @@ def check_size(
         findings: List that the finding is appended to.
     """
     if ignored_unit not in (None, "m"):
-        findings.append(
-            Finding(
-                "unit-ignored",
-                Severity.QUESTION,
-                1,
-                f"the file states its unit as {ignored_unit}, but was read as meters",
-                f"nothing was changed; state the unit {ignored_unit} if that is right",
-            )
+        findings.add(
+            "unit-ignored",
+            Severity.QUESTION,
+            1,
+            f"the file states its unit as {ignored_unit}, but was read as meters",
+            f"nothing was changed; state the unit {ignored_unit} if that is right",
         )
     largest = float(extent.max())
     if SMALLEST_USUAL_EXTENT_M <= largest <= LARGEST_USUAL_EXTENT_M:
@@ -158,17 +143,15 @@ def check_size(
     unit = guess_unit(
         largest / meters_per_unit, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M
     )
-    findings.append(
-        Finding(
-            "suspicious-size",
-            Severity.QUESTION,
-            1,
-            f"{length(largest)} is {size} for something to touch "
-            f"(1 unit of the file was taken as {length(meters_per_unit)})",
-            "nothing was changed; is the unit right?"
-            if unit is None
-            else f"nothing was changed; state the unit {unit} if the file is in {unit}",
-        )
+    findings.add(
+        "suspicious-size",
+        Severity.QUESTION,
+        1,
+        f"{length(largest)} is {size} for something to touch "
+        f"(1 unit of the file was taken as {length(meters_per_unit)})",
+        "nothing was changed; is the unit right?"
+        if unit is None
+        else f"nothing was changed; state the unit {unit} if the file is in {unit}",
     )
 
 

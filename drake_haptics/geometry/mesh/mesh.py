@@ -33,7 +33,7 @@ from drake_haptics.geometry.mesh.repair import (
     remove_zero_area_faces,
     separate_components,
 )
-from drake_haptics.geometry.mesh.report import Finding, MeshReport, Severity
+from drake_haptics.geometry.mesh.report import Findings, MeshReport, Severity
 from drake_haptics.geometry.mesh.units import meters_per_unit
 from drake_haptics.geometry.mesh.winding import Winding, wind_components
 
@@ -109,7 +109,7 @@ class Mesh:
                 index out of range, have no triangle with an area; or `strict` and there
                 is a defect.
         """
-        findings: list[Finding] = []
+        findings = Findings()
         return _take_in(vertices, triangles, name, 1.0, findings, strict)
 
 
@@ -135,16 +135,14 @@ def load_mesh(
     """
     factor = meters_per_unit(unit, scale)
     raw = read_mesh_file(path)
-    findings: list[Finding] = []
+    findings = Findings()
     if raw.parts > 1:
-        findings.append(
-            Finding(
-                "scene",
-                Severity.NOTE,
-                raw.parts,
-                f"the file is a scene of {raw.parts} placed geometries",
-                "merged into one mesh, each where it is placed",
-            )
+        findings.add(
+            "scene",
+            Severity.NOTE,
+            raw.parts,
+            f"the file is a scene of {raw.parts} placed geometries",
+            "merged into one mesh, each where it is placed",
         )
     stated = unit is not None or scale is not None
     return _take_in(
@@ -163,7 +161,7 @@ def _take_in(
     triangles: Any,
     name: str,
     factor: float,
-    findings: list[Finding],
+    findings: Findings,
     strict: bool,
     ignored_unit: str | None = None,
 ) -> Mesh:
@@ -176,20 +174,17 @@ def _take_in(
         F = remove_zero_area_faces(V, F, findings)
     except MeshError as error:
         raise MeshError(f"{name}: {error}") from None
-    if num_unused:
-        findings.append(
-            Finding(
-                "unused-vertices",
-                Severity.NOTE,
-                num_unused,
-                count(
-                    num_unused,
-                    "vertex belongs to no triangle",
-                    "vertices belong to no triangle",
-                ),
-                "dropped",
-            )
-        )
+    findings.add(
+        "unused-vertices",
+        Severity.NOTE,
+        num_unused,
+        count(
+            num_unused,
+            "vertex belongs to no triangle",
+            "vertices belong to no triangle",
+        ),
+        "dropped",
+    )
     V, F = drop_unused_vertices(V, F)
     check_branching(F, findings)
     winding = wind_components(V, F, findings)
@@ -211,7 +206,7 @@ def _freeze(
     name: str,
     factor: float,
     extent: np.ndarray,
-    findings: list[Finding],
+    findings: Findings,
 ) -> Mesh:
     components = _describe_components(V, F, winding)
     solid = winding.solid[winding.component]

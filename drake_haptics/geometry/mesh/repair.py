@@ -6,7 +6,7 @@ import numpy as np
 
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
-from drake_haptics.geometry.mesh.report import Finding, Severity
+from drake_haptics.geometry.mesh.report import Findings, Severity
 from drake_haptics.geometry.mesh.topology import (
     Edges,
     connected_labels,
@@ -35,7 +35,7 @@ def equal_vertices(vertices: np.ndarray) -> np.ndarray:
 
 
 def join_open_parts(
-    triangles: np.ndarray, twin: np.ndarray, findings: list[Finding]
+    triangles: np.ndarray, twin: np.ndarray, findings: Findings
 ) -> np.ndarray:
     """Joins bit-equal vertices, except those of parts that are closed as written.
 
@@ -55,20 +55,17 @@ def join_open_parts(
     is_open[label[~sound]] = True
     joined = np.where(is_open[label][:, None], twin[triangles], triangles)
     merged = len(np.unique(triangles)) - len(np.unique(joined))
-    if merged:
-        findings.append(
-            Finding(
-                "duplicate-vertices",
-                Severity.NOTE,
-                merged,
-                count(
-                    merged,
-                    "vertex is a bit-equal copy of another",
-                    "vertices are bit-equal copies of others",
-                ),
-                "joined",
-            )
-        )
+    findings.add(
+        "duplicate-vertices",
+        Severity.NOTE,
+        merged,
+        count(
+            merged,
+            "vertex is a bit-equal copy of another",
+            "vertices are bit-equal copies of others",
+        ),
+        "joined",
+    )
     return joined
 
 
@@ -100,7 +97,7 @@ def separate_components(
     return vertices[own[order] % len(vertices)], rank[index].reshape(-1, 3)
 
 
-def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray:
+def distinct_faces(triangles: np.ndarray, findings: Findings) -> np.ndarray:
     """Finds which triangles to keep of those repeated, wound alike or opposite.
 
     Of triangles wound alike the first stays. A pair wound oppositely is either
@@ -119,20 +116,17 @@ def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray
     _, first = np.unique(rotated, axis=0, return_index=True)
     keep = np.sort(first)
     repeated = len(triangles) - len(keep)
-    if repeated:
-        findings.append(
-            Finding(
-                "duplicate-faces",
-                Severity.REPAIRED,
-                repeated,
-                count(
-                    repeated,
-                    "triangle is written more than once",
-                    "triangles are written more than once",
-                ),
-                "the first of each was kept",
-            )
-        )
+    findings.add(
+        "duplicate-faces",
+        Severity.REPAIRED,
+        repeated,
+        count(
+            repeated,
+            "triangle is written more than once",
+            "triangles are written more than once",
+        ),
+        "the first of each was kept",
+    )
     triangles, rotated = triangles[keep], rotated[keep]
     _, first, group, size = np.unique(
         np.sort(rotated, axis=1),
@@ -148,28 +142,22 @@ def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray
     wall = _is_inner_wall(triangles, opposed & is_first, ~opposed)
     num_wall = int(wall.sum())
     num_sheet = int(opposed.sum()) // 2 - num_wall
-    if num_wall:
-        findings.append(
-            Finding(
-                "inner-walls",
-                Severity.REPAIRED,
-                num_wall,
-                f"{num_wall:,} pairs of opposite triangles are a wall between solids "
-                f"that were glued together",
-                "removed, so that the solids are one",
-            )
-        )
-    if num_sheet:
-        findings.append(
-            Finding(
-                "opposite-faces",
-                Severity.REPAIRED,
-                num_sheet,
-                f"{count(num_sheet, 'triangle is', 'triangles are')} written a second"
-                " time with the opposite winding",
-                "the first of each was kept",
-            )
-        )
+    findings.add(
+        "inner-walls",
+        Severity.REPAIRED,
+        num_wall,
+        f"{num_wall:,} pairs of opposite triangles are a wall between solids "
+        f"that were glued together",
+        "removed, so that the solids are one",
+    )
+    findings.add(
+        "opposite-faces",
+        Severity.REPAIRED,
+        num_sheet,
+        f"{count(num_sheet, 'triangle is', 'triangles are')} written a second"
+        " time with the opposite winding",
+        "the first of each was kept",
+    )
     in_wall = np.zeros(len(first), dtype=bool)
     in_wall[group[wall]] = True
     return keep[(~opposed | is_first) & ~in_wall[group]]
@@ -205,7 +193,7 @@ def _is_inner_wall(
 
 
 def remove_zero_area_faces(
-    vertices: np.ndarray, triangles: np.ndarray, findings: list[Finding]
+    vertices: np.ndarray, triangles: np.ndarray, findings: Findings
 ) -> np.ndarray:
     """Removes triangles whose corners coincide or lie on one line.
 
@@ -239,15 +227,13 @@ def remove_zero_area_faces(
     triangles = triangles[~thin]
     if repeated.any() or turned:
         number = int(repeated.sum()) + turned
-        findings.append(
-            Finding(
-                "zero-area-faces",
-                Severity.REPAIRED,
-                number,
-                f"{count(number, 'triangle has', 'triangles have')} no area",
-                "removed"
-                + (", neighbors split where that closes the surface" if turned else ""),
-            )
+        findings.add(
+            "zero-area-faces",
+            Severity.REPAIRED,
+            number,
+            f"{count(number, 'triangle has', 'triangles have')} no area",
+            "removed"
+            + (", neighbors split where that closes the surface" if turned else ""),
         )
     return triangles
 

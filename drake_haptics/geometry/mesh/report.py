@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
@@ -63,18 +63,23 @@ class Finding:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain data for JSON."""
-        return {
-            "code": self.code,
-            "severity": self.severity.value,
-            "count": self.count,
-            "message": self.message,
-            "action": self.action,
-        }
+        return {**asdict(self), "severity": self.severity.value}
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Finding:
         """Reads the data of `to_dict`."""
         return Finding(**{**data, "severity": Severity(data["severity"])})
+
+
+class Findings(list[Finding]):
+    """The findings of an intake, in the order in which they are made."""
+
+    def add(
+        self, code: str, severity: Severity, count: int, message: str, action: str
+    ) -> None:
+        """Adds a finding; nothing if there are 0 of them."""
+        if count:
+            self.append(Finding(code, severity, count, message, action))
 
 
 @dataclass(frozen=True)

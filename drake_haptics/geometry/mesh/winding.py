@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drake_haptics.common.one_line import count
-from drake_haptics.geometry.mesh.report import Finding, Severity
+from drake_haptics.geometry.mesh.report import Findings, Severity
 from drake_haptics.geometry.mesh.topology import (
     find_edges,
     orientation_flips,
@@ -51,7 +51,7 @@ class Winding:
 
 
 def wind_components(
-    vertices: np.ndarray, triangles: np.ndarray, findings: list[Finding]
+    vertices: np.ndarray, triangles: np.ndarray, findings: Findings
 ) -> Winding:
     """Splits into components, winds each coherently and solids outward.
 
@@ -158,46 +158,36 @@ def _containers(
 
 
 def _report(
-    findings: list[Finding],
+    findings: Findings,
     component: np.ndarray,
     flip: np.ndarray,
     inverted: np.ndarray,
     cavity: np.ndarray,
 ) -> None:
-    if flip.any():
-        parts = len(np.unique(component[flip]))
-        findings.append(
-            Finding(
-                "incoherent-winding",
-                Severity.REPAIRED,
-                int(flip.sum()),
-                f"{count(int(flip.sum()), 'triangle')} in {count(parts, 'part')} "
-                f"{_are(flip)} wound against the neighbors",
-                "turned over, the larger area decides",
-            )
-        )
-    if inverted.any():
-        findings.append(
-            Finding(
-                "inverted-winding",
-                Severity.REPAIRED,
-                int(inverted.sum()),
-                f"{count(int(inverted.sum()), 'closed part')} {_are(inverted)} wound "
-                "inward",
-                "turned outward",
-            )
-        )
-    if cavity.any():
-        findings.append(
-            Finding(
-                "cavities",
-                Severity.NOTE,
-                int(cavity.sum()),
-                f"{count(int(cavity.sum()), 'closed part')} inside another "
-                f"{_are(cavity)} wound inward",
-                "kept, as the walls of cavities",
-            )
-        )
+    parts = len(np.unique(component[flip]))
+    findings.add(
+        "incoherent-winding",
+        Severity.REPAIRED,
+        int(flip.sum()),
+        f"{count(int(flip.sum()), 'triangle')} in {count(parts, 'part')} "
+        f"{_are(flip)} wound against the neighbors",
+        "turned over, the larger area decides",
+    )
+    findings.add(
+        "inverted-winding",
+        Severity.REPAIRED,
+        int(inverted.sum()),
+        f"{count(int(inverted.sum()), 'closed part')} {_are(inverted)} wound inward",
+        "turned outward",
+    )
+    findings.add(
+        "cavities",
+        Severity.NOTE,
+        int(cavity.sum()),
+        f"{count(int(cavity.sum()), 'closed part')} inside another {_are(cavity)}"
+        " wound inward",
+        "kept, as the walls of cavities",
+    )
 
 
 def _are(which: np.ndarray) -> str:
