@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -81,7 +82,7 @@ def make_brush(
     rings = [np.column_stack([x, y, np.full(8, z)]) for z in (0.003, 0.010)]
     ends = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0105)]
     tooth = trimesh.convex.convex_hull(np.vstack([*rings, ends]))
-    brush = trimesh.util.concatenate(
+    brush: Any = trimesh.util.concatenate(
         [tooth.copy().apply_translation((x, y, 0.0)) for x, y in places]
     )
     return decompose(Mesh.from_arrays(brush.vertices, brush.faces))
