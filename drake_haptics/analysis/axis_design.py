@@ -103,8 +103,7 @@ class AxisDesign:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
 
 def design_axis(

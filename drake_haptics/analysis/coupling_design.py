@@ -168,8 +168,7 @@ class CouplingDesign:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
 
 @on_one_blas_thread

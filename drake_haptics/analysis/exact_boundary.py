@@ -85,8 +85,7 @@ class ExactBoundary:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
 
 def calc_exact_boundary(delay_samples: int, points: int = 200) -> ExactBoundary:

@@ -163,7 +163,8 @@ def calc_monodromy(
     """
     check_system_and_context(diagram, context)
     check_positive(tolerance=tolerance)
-    if not all(_is_sampled_plant(leaf) for leaf in _list_abstract(diagram)):
+    abstract = [leaf for leaf in walk_leaves(diagram) if leaf.num_abstract_states()]
+    if not all(map(_is_sampled_plant, abstract)):
         check_abstract_state(diagram)
     check_conversion(diagram)
     timings = find_timings(diagram, context) + _find_sampled_plants(diagram)
@@ -232,10 +233,6 @@ def _simulate(
     simulator.Initialize(InitializeParams(suppress_initialization_events=True))
     simulator.AdvanceTo(span_s[1])
     return get_state(context)
-
-
-def _list_abstract(diagram: System) -> list[System]:
-    return [leaf for leaf in walk_leaves(diagram) if leaf.num_abstract_states()]
 
 
 def _is_sampled_plant(leaf: System) -> bool:

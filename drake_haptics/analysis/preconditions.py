@@ -174,13 +174,13 @@ def check_events(system: System, context: Context, period_s: float) -> None:
 
 
 def _say_suspects(system: System) -> str:
-    names = [calc_path(system, leaf) for leaf in walk_leaves(system) if _is_own(leaf)]
+    # Drake's own do nothing of the kind.
+    names = [
+        calc_path(system, leaf)
+        for leaf in walk_leaves(system)
+        if not type(leaf).__module__.startswith("pydrake.")
+    ]
     return f"Look among {', '.join(names)}." if names else ""
-
-
-def _is_own(leaf: System) -> bool:
-    """Tells whether a system is a user's: Drake's own do nothing of the kind."""
-    return not type(leaf).__module__.startswith("pydrake.")
 
 
 def _list_timings(timings: Sequence[Timing]) -> str:

@@ -124,7 +124,7 @@ class SceneStability:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns all of it, ready for JSON."""
-        plain: dict[str, Any] = to_plain_data(
+        return to_plain_data(
             {
                 "description": self.scene.description,
                 "device": self.scene.device.preset,
@@ -149,7 +149,6 @@ class SceneStability:
                 "map": None if self.map is None else self.map.to_dict(),
             }
         )
-        return plain
 
 
 def analyze_scene(

@@ -23,7 +23,6 @@ from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 from drake_haptics.report.plain_data import to_plain_data
-from drake_haptics.scene.schema import CouplingParameters
 
 Kind = Literal["translation", "rotation"]
 Against = Literal["this contact", "a rigid wall"]
@@ -86,10 +85,9 @@ class StiffnessLimits:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields and the margin, None for what is not finite."""
-        plain: dict[str, Any] = to_plain_data(
+        return to_plain_data(
             asdict(self) | {"unit": self.unit, "gain_margin": self.gain_margin}
         )
-        return plain
 
 
 @on_one_blas_thread
@@ -124,7 +122,8 @@ def find_stiffness_limits(
         nonlocal done
         done += 1
         report(1.0 - 0.9**done)
-        return analyze_held_scene(held, _replace(held, stiffness_name, value))
+        coupling = replace(held.scene.coupling, **{stiffness_name: value})
+        return analyze_held_scene(held, coupling)
 
     reasons: dict[float, str] = {}
 
@@ -179,32 +178,26 @@ def _find_simulated(growth: Callable[[float], float], near: float) -> float:
         return math.nan
 
 
-def _replace(held: HeldScene, name: str, value: float) -> CouplingParameters:
-    return replace(held.scene.coupling, **{name: value})
-
-
 def _make_wall(
     held: HeldScene, kind: Kind, handle: HeldHandle, damping: float
 ) -> SampledWall:
     """Returns the coupling as a wall on one axis of the device and hand."""
-    period_s = 1.0 / held.scene.device.rate_hz
-    if kind == "translation":
-        return SampledWall(
-            mass=handle.mass_kg,
-            damping=handle.damping_Ns_per_m,
-            period_s=period_s,
-            wall_damping=damping,
-            delay_s=calc_force_delay(held.scene),
-            hand_stiffness=handle.stiffness_N_per_m,
-            true_velocity=True,
+    mass, device_damping, hand_stiffness = (
+        (handle.mass_kg, handle.damping_Ns_per_m, handle.stiffness_N_per_m)
+        if kind == "translation"
+        else (
+            handle.inertia_kgm2,
+            handle.rotational_damping_Nms_per_rad,
+            handle.rotational_stiffness_Nm_per_rad,
         )
+    )
     return SampledWall(
-        mass=handle.inertia_kgm2,
-        damping=handle.rotational_damping_Nms_per_rad,
-        period_s=period_s,
+        mass=mass,
+        damping=device_damping,
+        period_s=1.0 / held.scene.device.rate_hz,
         wall_damping=damping,
         delay_s=calc_force_delay(held.scene),
-        hand_stiffness=handle.rotational_stiffness_Nm_per_rad,
+        hand_stiffness=hand_stiffness,
         true_velocity=True,
     )
 

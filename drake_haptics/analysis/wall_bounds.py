@@ -73,8 +73,7 @@ class DelayBounds:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
 
 @on_one_blas_thread
@@ -142,8 +141,7 @@ class QuantizationBounds:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
 
 def calc_quantization_bounds(

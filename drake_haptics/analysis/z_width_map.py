@@ -226,7 +226,7 @@ class ZWidth:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only, None for NaN: ready for JSON."""
-        plain: dict[str, Any] = to_plain_data(
+        return to_plain_data(
             {
                 "stiffness": self.stiffness,
                 "damping": self.damping,
@@ -238,7 +238,6 @@ class ZWidth:
                 ],
             }
         )
-        return plain
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> ZWidth:

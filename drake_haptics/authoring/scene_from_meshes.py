@@ -89,7 +89,7 @@ def make_scene_for_meshes(
     grip_point[2] = (tool.vertices[:, 2].min() + tool.vertices[:, 2].max()) / 2.0
     tolerance = min(
         ContactParameters().tolerance_m,
-        0.02 * min(map(_calc_diagonal, (tool, environment))),
+        *(0.02 * float(np.linalg.norm(m.report.extent)) for m in (tool, environment)),
     )
     return Scene(
         description=f"{tool_path.name} scrapes {environment_path.name}",
@@ -128,10 +128,6 @@ def _check_extent(
         f"the {name} {path.name} is {length(extent)} long, and must be between"
         f" {length(_SMALLEST_EXTENT_M)} and {length(largest_m)}{hint}"
     )
-
-
-def _calc_diagonal(mesh: Mesh) -> float:
-    return float(np.linalg.norm(mesh.report.extent))
 
 
 def _find_tip(tool: Mesh) -> np.ndarray:
@@ -195,5 +191,4 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParame
 def _round_position(position: ArrayLike) -> list[float]:
     """Returns a position (3,), m, as numbers that are short to read."""
     # 0 is added so that none is minus nothing.
-    rounded: list[float] = (np.asarray(position).round(_DECIMALS_M) + 0.0).tolist()
-    return rounded
+    return (np.asarray(position).round(_DECIMALS_M) + 0.0).tolist()

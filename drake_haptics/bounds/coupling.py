@@ -188,7 +188,6 @@ def _check_stiffness(
 def _check_damping(
     kind: _Kind, K: float, B: float, m: float, period_s: float
 ) -> list[BrokenBound]:
-    """Checks B against Jury's criterion."""
     bound = calc_sampled_damping(m, K, period_s)
     if B <= bound:
         return []

@@ -92,8 +92,7 @@ class LazyGroup(click.Group):
         if cmd_name not in self._by_name:
             return None
         module = importlib.import_module(self._by_name[cmd_name][0])
-        command: click.Command = getattr(module, cmd_name)
-        return command
+        return getattr(module, cmd_name)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -206,7 +206,6 @@ def run_scene(
 
 
 def _open_page(port: int | None) -> socket.socket:
-    """Opens the port of the page."""
     with naming("--port"):
         return open_page_port(port)
 
@@ -249,7 +248,6 @@ def _prepare(
 def _write_recording(
     haptic: HapticDiagram, meshcat: Meshcat | None, file: Path
 ) -> None:
-    """Writes the recording of the view."""
     if meshcat is None or haptic.visualizer is None:
         return
     haptic.visualizer.StopRecording()

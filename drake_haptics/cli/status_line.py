@@ -147,7 +147,6 @@ class StatusLine(LiveLine):
         self.update()
 
     def _make_run_line(self, passed_s: float) -> str:
-        """Returns the line."""
         assert self._context is not None
         time_s = self._context.get_time()
         # A scene that begins again has gone nowhere yet.
@@ -160,7 +159,7 @@ class StatusLine(LiveLine):
             parts = [speed, force, depth, *relief, contacts]
         else:
             reading = backend.read()
-            if not _shows_force(reading):
+            if reading is None or reading.gate != GateState.ACTIVE:
                 force += " [dim](not shown)[/]"
             ticks = run_s / self._haptic.period_s
             late_s = self._pace.calc_lateness(_LATEST)
@@ -211,11 +210,6 @@ class StatusLine(LiveLine):
             f"{deepest_mm:4.2f} mm deep",
             f"{count(len(contacts), 'contact')}, {count(len(clusters), 'cluster')}",
         )
-
-
-def _shows_force(reading: DeviceReading | None) -> bool:
-    """Tells whether the device shows what it is asked for."""
-    return reading is not None and reading.gate == GateState.ACTIVE
 
 
 def make_summary(figures: dict[str, Any]) -> Table:
@@ -339,7 +333,6 @@ class DriverStatusLine(LiveLine):
         self._ticks = 0
 
     def _make_driver_line(self, passed_s: float) -> str:
-        """Returns the line."""
         driver, reading = self._driver, self._driver.reading
         ticks = driver.pace.ticks
         rate, self._ticks = (ticks - self._ticks) / passed_s, ticks

@@ -86,7 +86,6 @@ class PagePicture:
         return True
 
     def _show(self, view: str, visible: bool) -> None:
-        """Shows or hides a view."""
         check_view(view)
         self.views[view] = visible
         if self._visualizer is not None:

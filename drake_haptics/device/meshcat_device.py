@@ -202,7 +202,6 @@ class MeshcatDevice(DeviceBackend):
             self._meshcat.DeleteButton(name, strict=False)
 
     def _add_controls(self) -> None:
-        """Adds sliders and buttons."""
         for i, (name, less, more) in enumerate(_SLIDERS):
             largest = float(self._largest[i])
             self._meshcat.AddSlider(name, -largest, largest, 1.0, 0.0, less, more)

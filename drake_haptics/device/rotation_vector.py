@@ -95,7 +95,6 @@ def _add_crosses(
 
 
 def _cross(a: Sequence[float], b: Sequence[float]) -> list[float]:
-    """Returns a × b."""
     return [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],

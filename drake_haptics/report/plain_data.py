@@ -53,8 +53,7 @@ def read_figures(kind: type[_Figures], data: Any) -> _Figures:
     Where a field is a number, null stands for NaN, and the words of `name_number` for
     their numbers.
     """
-    figures: _Figures = _read(kind, data)
-    return figures
+    return _read(kind, data)
 
 
 def _read(kind: Any, data: Any) -> Any:

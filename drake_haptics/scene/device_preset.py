@@ -24,8 +24,7 @@ NUM_JOINTS = 6
 
 
 def _make_identity() -> list[list[float]]:
-    identity: list[list[float]] = np.eye(NUM_JOINTS).tolist()
-    return identity
+    return np.eye(NUM_JOINTS).tolist()
 
 
 @dataclass

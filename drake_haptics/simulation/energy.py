@@ -65,7 +65,7 @@ class EnergyLedger:
         self._coupling = _reader(coupling, root)
         self._sources = [_reader(port, root) for port in sources.values()]
         stored = _make_stored_readers(loop, root, lambda: self._gains)
-        self._stored = [stored.get(name, _nothing) for name in sources]
+        self._stored = [stored.get(name, lambda: 0.0) for name in sources]
 
     def __repr__(self) -> str:
         device = self.to_dict()["device"]
@@ -184,7 +184,3 @@ def _make_stored_readers(
         weight_W, p_TTcm = gravity.weight_W_N, gravity.p_TTcm
         readers["gravity"] = lambda: _core.weight_energy(X_WT(), p_TTcm, weight_W)
     return readers
-
-
-def _nothing() -> float:
-    return 0.0

@@ -69,13 +69,11 @@ class LiveKey:
     def read(self, scene: Scene) -> float:
         """Returns the value in a scene."""
         start: Any = scene
-        value: float = reduce(getattr, self.key.split("."), start)
-        return value
+        return reduce(getattr, self.key.split("."), start)
 
     def change(self, scene: Scene, value: float) -> Scene:
         """Returns a copy of a scene with another value; not checked."""
-        changed: Scene = _replace(scene, self.key, value)
-        return changed
+        return _replace(scene, self.key, value)
 
 
 def live_keys(scene: Scene) -> tuple[LiveKey, ...]:

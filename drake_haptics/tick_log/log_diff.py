@@ -273,5 +273,4 @@ def make_title(a: TickLog, b: TickLog, names: tuple[str, str]) -> str:
 
 
 def _norm(vectors: np.ndarray) -> np.ndarray:
-    """Returns the norm of each row."""
     return np.linalg.norm(vectors, axis=1)

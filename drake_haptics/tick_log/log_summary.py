@@ -56,8 +56,7 @@ class LogSummary:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns it ready for JSON; infinities and NaN become None."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
 
 def summarize_log(

@@ -85,7 +85,6 @@ class PageProcess:
         )
 
     def _read(self) -> None:
-        """Reads the messages of the loop."""
         with suppress(BlockingIOError):
             while packet := self._link.recv(LARGEST_DATAGRAM):
                 if packet.startswith(KIND):

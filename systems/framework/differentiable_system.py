@@ -298,7 +298,6 @@ def _update(
     context: Context_[AutoDiffXd],
     next_state: DiscreteValues_[AutoDiffXd],
 ) -> None:
-    """Updates a twin's state."""
     at = AutoDiffPoint(twin, context, _list_inputs(system))
     answer = _from_core(system.differentiate_update(at))
     start = 0

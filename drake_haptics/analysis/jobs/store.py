@@ -274,8 +274,7 @@ def _read(line: bytes) -> dict[str, Any] | None:
     body, _, end = line.rpartition(_DIGEST)
     if end != _hash(body) + b'"}\n':
         return None
-    record: dict[str, Any] = json.loads(body + b"}")
-    return record
+    return json.loads(body + b"}")
 
 
 def _hash(body: bytes) -> bytes:

@@ -263,7 +263,6 @@ class LcmDevice(DeviceBackend):
         )
 
     def _send(self, F_Ho_B: np.ndarray, enable: bool) -> None:
-        """Sends a command."""
         self._sequence += 1
         message = lcmt_haptic_command(
             utime=round(1e6 * self._clock()),

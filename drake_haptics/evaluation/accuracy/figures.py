@@ -150,8 +150,7 @@ class AccuracyStudy:
         Infinite numbers are the text "infinite", and NaN is "none"; a null is a figure
         that was not sought.
         """
-        data: dict[str, Any] = to_plain_data(self, name_number)
-        return data
+        return to_plain_data(self, name_number)
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> AccuracyStudy:

@@ -324,7 +324,6 @@ def _describe_price(row: Row) -> str:
 
 
 def _describe_ratio(ratio: float) -> str:
-    """Returns a ratio in words."""
     for value, words in ((0.5, "half"), (1.0 / 3.0, "a third of"), (1.0, "as much as")):
         if abs(ratio - value) < _ROUND * value:
             return words

@@ -65,8 +65,7 @@ def _find_near(p_WC: np.ndarray, centers_W: np.ndarray, reach: np.ndarray) -> li
     low, high = p_WC.min(axis=0), p_WC.max(axis=0)
     nearest = np.clip(centers_W, low, high)
     near = np.linalg.norm(centers_W - nearest, axis=1) < reach
-    indices: list[int] = np.flatnonzero(near).tolist()
-    return indices
+    return np.flatnonzero(near).tolist()
 
 
 def _query(
@@ -75,10 +74,7 @@ def _query(
     """Returns the global signed distance (n,) of a pair at each pose."""
     if len(X_WA) == 0:
         return np.empty(0)
-    distance: np.ndarray = (
-        ConvexPair(A, B, "global").query_trajectory(X_WA, X_WB).distance
-    )
-    return distance
+    return ConvexPair(A, B, "global").query_trajectory(X_WA, X_WB).distance
 
 
 @dataclass(frozen=True, eq=False)

@@ -109,8 +109,7 @@ class BenchFigures:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns everything as plain data; None stands for NaN."""
-        plain: dict[str, Any] = to_plain_data(self)
-        return plain
+        return to_plain_data(self)
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> BenchFigures:

@@ -173,12 +173,6 @@ def evaluate_paper(
     return PaperEvaluation(describe_machine(), is_cut_short=is_cut_short, **found)
 
 
-def _measure_table1(
-    effort: Effort, meshes: Path | None, show: Progress
-) -> tuple[ModelFigures, ...]:
-    return measure_table1(meshes, show)
-
-
 def _measure_figure11(
     effort: Effort, meshes: Path | None, show: Progress
 ) -> tuple[Run, ...]:
@@ -213,7 +207,7 @@ def _measure_analysis(effort: Effort, meshes: Path | None, show: Progress) -> An
 
 
 _MEASURE: dict[Part, Callable[[Effort, Path | None, Progress], Any]] = {
-    "table1": _measure_table1,
+    "table1": lambda _, meshes, show: measure_table1(meshes, show),
     "figure11": _measure_figure11,
     "figure12": _measure_figure12,
     "analysis": _measure_analysis,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from drake_haptics.evaluation.paper.evaluation import Analysis
-from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass, Smoothness
+from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass
 from drake_haptics.evaluation.paper.profile import ProfileFigures
 from drake_haptics.evaluation.paper.published import (
     CUP_SPOON_CONTACTS,
@@ -233,16 +233,13 @@ def _judge_peer(passed: PenPass, name: str) -> Statement:
         verdict = "better"
     elif ours.normal_step_deg > _SAME * theirs.normal_step_deg:
         verdict = "differs"
+    times = theirs.normal_step_deg / ours.normal_step_deg
     return Statement(
         verdict,
         f"For comparison, {name} on {passed.triangles:,} triangles: the normal steps"
-        f" by {theirs.normal_step_deg:.2f}° at most, {_times(theirs, ours)} times ours,"
+        f" by {theirs.normal_step_deg:.2f}° at most, {times:.1f} times ours,"
         f" and the distance by {1e6 * theirs.distance_step_m:.2f} µm.",
     )
-
-
-def _times(theirs: Smoothness, ours: Smoothness) -> str:
-    return f"{theirs.normal_step_deg / ours.normal_step_deg:.1f}"
 
 
 def judge_analysis(analysis: Analysis) -> list[Statement]:

@@ -61,8 +61,7 @@ class PeerMethod:
             ImportError: The library is not installed.
         """
         path = f"drake_haptics.evaluation.accuracy.peers.{self.module}"
-        answer: Answer = getattr(importlib.import_module(path), self.function)
-        return answer
+        return getattr(importlib.import_module(path), self.function)
 
 
 # fmt: off

@@ -6,6 +6,7 @@ import weakref
 from importlib.metadata import version
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from drake_haptics.evaluation.benchmark.pair_library import (
     PairAnswers,
@@ -54,10 +55,9 @@ class BulletQuery:
         return deepest[_DISTANCE], deepest[_NORMAL_ON_B], time_s
 
     def _closest_points(self, body_A: int, body_B: int) -> list[tuple]:
-        points: list[tuple] = pybullet.getClosestPoints(
+        return pybullet.getClosestPoints(
             body_A, body_B, _REACH_M, physicsClientId=self._client
         )
-        return points
 
     def _add(self, kind: int, **shape: object) -> int:
         client = self._client
@@ -68,22 +68,11 @@ class BulletQuery:
 
     def _place(self, body: int, p_WB: list[float], R_WB: np.ndarray) -> None:
         pybullet.resetBasePositionAndOrientation(
-            body, p_WB, _quaternion(R_WB), physicsClientId=self._client
+            body,
+            p_WB,
+            Rotation.from_matrix(R_WB).as_quat().tolist(),
+            physicsClientId=self._client,
         )
-
-
-def _quaternion(R: np.ndarray) -> list[float]:
-    """Returns [x, y, z, w] of a rotation, from its largest component."""
-    K = np.array(
-        [
-            [R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0],
-            [R[0, 1] + R[1, 0], R[1, 1] - R[0, 0] - R[2, 2], 0, 0],
-            [R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], R[2, 2] - R[0, 0] - R[1, 1], 0],
-            [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], np.trace(R)],
-        ]
-    )
-    quaternion: list[float] = np.linalg.eigh(K, UPLO="L")[1][:, -1].tolist()
-    return quaternion
 
 
 LIBRARIES = [PairLibrary("Bullet", version("pybullet"), False, BulletQuery)]
