@@ -43,11 +43,7 @@ class Lesson:
 
 
 class CommandWithExamples(click.Command):
-    """A command whose `--help` ends with a lesson.
-
-    Args:
-        lesson: The lesson.
-    """
+    """A command whose `--help` ends with a lesson."""
 
     def __init__(self, *args: Any, lesson: Lesson, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -64,12 +60,7 @@ Commands = Mapping[str, Mapping[str, tuple[str, str]]]
 
 
 class LazyGroup(click.Group):
-    """Imports a command on demand, so that a light one never imports Drake.
-
-    Args:
-        commands_by_heading: All commands, in the order of --help.
-        lesson: The lesson at the end of --help.
-    """
+    """Imports a command on demand, so that a light one never imports Drake."""
 
     def __init__(
         self, *, commands_by_heading: Commands, lesson: Lesson, **kwargs: Any

@@ -114,14 +114,7 @@ _LATEST = 1000
 
 
 class StatusLine(LiveLine):
-    """One line that says what a run does.
-
-    Args:
-        console: Console to write to.
-        haptic: The diagram that runs.
-        pace: Paces the run, if it is paced.
-        clock: Reads the time, s.
-    """
+    """One line that says what a run does."""
 
     def __init__(
         self,
@@ -314,13 +307,7 @@ DRIVER_REMEDY = "until the host disables it"
 
 
 class DriverStatusLine(LiveLine):
-    """The state of a driver in one line.
-
-    Args:
-        console: Console to write to.
-        driver: The driver that runs.
-        clock: Reads the time, s.
-    """
+    """The state of a driver in one line."""
 
     def __init__(
         self,

@@ -282,12 +282,7 @@ class DeviceDriver:
 
 
 class DriverStatistics:
-    """Loads and faults of a driver.
-
-    Args:
-        max_force_N: Largest force that the device may show, N.
-        max_torque_Nm: Largest torque, N·m.
-    """
+    """Loads and faults of a driver."""
 
     def __init__(self, max_force_N: float, max_torque_Nm: float):
         self._limits = (max_torque_Nm, max_force_N)

@@ -213,14 +213,7 @@ def run_study(
 
 
 class _Study:
-    """The tasks of a study that are done. Tasks are known by their exact JSON.
-
-    Args:
-        function: Function of one task.
-        keys: The tasks.
-        store: Store of the results so far and of new ones, or None.
-        progress: Called as in `run_study`.
-    """
+    """The tasks of a study that are done. Tasks are known by their exact JSON."""
 
     def __init__(
         self,
