@@ -151,16 +151,17 @@ def _describe_defect(error: BaseException) -> str:
 
 
 @contextmanager
-def naming(option: str) -> Iterator[None]:
-    """Puts the option before the library's message about its argument.
+def naming(given: str, kind: type[HapticsError] = HapticsError) -> Iterator[None]:
+    """Puts the option, or its value, before the library's message about it.
 
     Raises:
-        HapticsError: The library raised one, whose message names no option.
+        HapticsError: The library raised one of this kind, whose message does not name
+            what was given.
     """
     try:
         yield
-    except HapticsError as error:
-        raise HapticsError(f"{option}: {error}") from error
+    except kind as error:
+        raise kind(f"{given}: {error}") from error
 
 
 @contextmanager

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import socket
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -154,7 +153,9 @@ def run_scene(
     if not headless:
         locked = _explain_lock({"--record": record, "--log": log, "--json": json_file})
         views = SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST
-        page = PageOptions(_open_page(port), name, locked, views)
+        with naming("--port"):
+            listener = open_page_port(port)
+        page = PageOptions(listener, name, locked, views)
     meshcat = None if headless and record is None else start_meshcat()
     # Also while the report is written: a second Ctrl-C must not lose it.
     with lasting_interrupt() as check_interrupt:
@@ -203,11 +204,6 @@ def run_scene(
             f"the run ended with its device at fault ({describe_fault(fault)}):"
             " docs/connect-a-device.md says what each fault means"
         )
-
-
-def _open_page(port: int | None) -> socket.socket:
-    with naming("--port"):
-        return open_page_port(port)
 
 
 def _explain_lock(files: dict[str, object]) -> str:

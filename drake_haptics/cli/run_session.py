@@ -8,8 +8,8 @@ import select
 import socket
 import sys
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing, contextmanager, nullcontext, suppress
+from collections.abc import Callable
+from contextlib import ExitStack, closing, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.progress import Progress, TaskID
 
 from drake_haptics.authoring.plausibility import check_plausibility
-from drake_haptics.cli.endings import warn
+from drake_haptics.cli.endings import naming, warn
 from drake_haptics.cli.live_line import ChangeLog
 from drake_haptics.cli.options import name_scale_options
 from drake_haptics.cli.status_line import StatusLine, describe_held
@@ -201,11 +201,13 @@ def run_session(
             stack.enter_context(closing(cockpit))
             backend = cockpit.backend
         elif device is not None:
-            with _page_in_words():
+            try:
                 backend = stack.enter_context(open_device(device, scene, meshcat))
+            except NoPageError as error:
+                raise DeviceError(f"{error}: leave --headless out") from error
             if backend.shows_force:
                 backend = take_device(backend, scene)
-        with timer or nullcontext(), _address_in_words(device):
+        with timer or nullcontext(), naming(str(device), DeviceError):
             haptic = build_scene(console, scene, meshcat, backend, recorder)
         prepare(haptic, None if cockpit is None else cockpit.url)
         is_paced = cockpit is not None or backend is not None
@@ -261,24 +263,6 @@ def run_session(
         warn(str(warning.message))
     parts = explain_tick(haptic, timer) if timer is not None else []
     return Session(haptic, last, figures, parts, error)
-
-
-@contextmanager
-def _page_in_words() -> Iterator[None]:
-    """Says which option leaves no page for a device that needs one."""
-    try:
-        yield
-    except NoPageError as error:
-        raise DeviceError(f"{error}: leave --headless out") from error
-
-
-@contextmanager
-def _address_in_words(device: str | None) -> Iterator[None]:
-    """Names the address of a device that does not answer."""
-    try:
-        yield
-    except DeviceError as error:
-        raise DeviceError(f"{device}: {error}") from error
 
 
 class _Onlookers:
