@@ -32,8 +32,8 @@ from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
 from drake_haptics.visualization.meshcat import CAMERAS
-from drake_haptics.web.live_page import LivePage, Outlook
-from drake_haptics.web.messages import ACTIVE, SIMULATED, WAITING
+from drake_haptics.web.live_page import LivePage
+from drake_haptics.web.messages import ACTIVE, SIMULATED, WAITING, Outlook
 
 _LONGEST_DESCRIPTION = 2000
 _CLUSTERING_HELP = (

@@ -197,10 +197,6 @@ class Segments:
             )
 
 
-# Until a page tells, the camera is this many radii in front of the workspace: at -y.
-_FIRST_DISTANCE = 4.0
-
-
 class CockpitRun:
     """The page of a run, and the holder of its handle; to be closed.
 
@@ -235,13 +231,11 @@ class CockpitRun:
         """
         site = find_device_site(scene)
         p_WH = (site.X_WB @ site.X_BH).translation()
-        distance_m = _FIRST_DISTANCE * site.workspace_radius_m
         self._meshcat = meshcat
         self._changes = SceneChanges(scene)
         with ExitStack() as stack:
-            self._page = LivePage(
-                meshcat, look_from_the_front(p_WH, distance_m), listener
-            )
+            X_WC = look_from_the_front(p_WH, site.workspace_radius_m)
+            self._page = LivePage(meshcat, X_WC, listener)
             stack.enter_context(closing(self._page))
             advice = CouplingAdvice(scene)
             self._holding = Holding(scene, meshcat, device, has_hand=advice.has_hand)

@@ -77,38 +77,6 @@ def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.nd
     return np.concatenate([X_WG[:4], p_WCenter + radius_m / distance * offset])
 
 
-class PagePilot:
-    """Follows the handle's goal that a page asks for.
-
-    Attributes:
-        X_WG: (7,) goal [qw qx qy qz x y z], m.
-    """
-
-    def __init__(self, X_WStart: RigidTransform, radius_m: float):
-        """Starts at a pose.
-
-        Args:
-            X_WStart: Pose where it starts, and goes home to.
-            radius_m: Largest distance of the goal from there, m.
-        """
-        self._X_WStart = pose_to_vector(X_WStart)
-        self._radius_m = radius_m
-        self.X_WG = self._X_WStart
-
-    def move(self, by: Sequence[float], X_WC: RigidTransform) -> None:
-        """Moves the goal by (right, up, away) as `move_in_view`, X_WC the camera's."""
-        moved = move_in_view(self.X_WG, by, X_WC)
-        self.X_WG = keep_near(moved, self._X_WStart[4:], self._radius_m)
-
-    def turn(self, by: Sequence[float], X_WC: RigidTransform) -> None:
-        """Turns the goal by (right, up, roll) as `turn_in_view`, X_WC the camera's."""
-        self.X_WG = turn_in_view(self.X_WG, by, X_WC)
-
-    def go_home(self) -> None:
-        """Brings the goal back to where it started."""
-        self.X_WG = self._X_WStart
-
-
 class PageHandle(DeviceBackend):
     """A device that is moved by requests of pages; another part talks with them.
 
@@ -131,8 +99,10 @@ class PageHandle(DeviceBackend):
         check_positive(workspace_radius_m=workspace_radius_m)
         self._handle = FollowedHandle(pose_to_vector(X_BH))
         self._X_WB = X_WB
-        self._pilot = PagePilot(X_WB @ X_BH, workspace_radius_m)
-        self._reached_for = self._pilot.X_WG
+        self._radius_m = workspace_radius_m
+        self._X_WStart = pose_to_vector(X_WB @ X_BH)
+        # The goal of the handle, in the world.
+        self._X_WG = self._reached_for = self._X_WStart
         self._received = self._rejected = 0
 
     @property
@@ -158,11 +128,12 @@ class PageHandle(DeviceBackend):
         """
         match asked.get("do"):
             case "move":
-                self._pilot.move(asked["by"], X_WC)
+                moved = move_in_view(self._X_WG, asked["by"], X_WC)
+                self._X_WG = keep_near(moved, self._X_WStart[4:], self._radius_m)
             case "turn":
-                self._pilot.turn(asked["by"], X_WC)
+                self._X_WG = turn_in_view(self._X_WG, asked["by"], X_WC)
             case "home":
-                self._pilot.go_home()
+                self._X_WG = self._X_WStart
             case "take":
                 pass  # Whoever talks with the pages has seen to that.
             case _:
@@ -177,10 +148,9 @@ class PageHandle(DeviceBackend):
     def read(self) -> DeviceReading:
         """Returns the reading of now."""
         now_s = monotonic()
-        X_WG = self._pilot.X_WG
-        if X_WG is not self._reached_for:
-            self._reached_for = X_WG
-            X_BG = self._X_WB.InvertAndCompose(vector_to_pose(X_WG))
+        if self._X_WG is not self._reached_for:
+            self._reached_for = self._X_WG
+            X_BG = self._X_WB.InvertAndCompose(vector_to_pose(self._X_WG))
             self._handle.set_goal(pose_to_vector(X_BG), now_s)
         return self._handle.read(now_s)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,10 +11,12 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics.web.link import PageLink
-from drake_haptics.web.messages import TickBuffer
+from drake_haptics.web.messages import Outlook, TickBuffer
 
 # Nothing is drawn there; see `PageCamera.look`.
 _NUDGE = "/page_camera"
+# Until a page tells, the camera is this many radii in front of the workspace: at -y.
+_FIRST_DISTANCE = 4.0
 # A page may tell any number; Drake checks the rotation itself.
 _FARTHEST_M = 1e4
 
@@ -54,41 +55,20 @@ class PageCamera:
         self.numbers = (*R_WC.ravel().tolist(), *p_WC.tolist())
 
 
-def look_from_the_front(p_WQ: np.ndarray, distance_m: float) -> RigidTransform:
+def look_from_the_front(p_WQ: np.ndarray, radius_m: float) -> RigidTransform:
     """Returns the pose X_WC of a camera that looks along y, z upwards.
 
     Args:
         p_WQ: (3,) the point that it looks at, m.
-        distance_m: Distance of the camera from that point, m.
+        radius_m: Radius of the workspace about that point, m.
     """
     R_WC = RotationMatrix(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
-    return RigidTransform(R_WC, p_WQ - np.array([0.0, distance_m, 0.0]))
+    return RigidTransform(R_WC, p_WQ - np.array([0.0, _FIRST_DISTANCE * radius_m, 0.0]))
 
 
 _HEAR_PERIOD_S = 1 / 50
 _SHOW_PERIOD_S = 1 / 30
 _LOOK_PERIOD_S = 1 / 20
-
-
-@dataclass(frozen=True)
-class Outlook:
-    """The state that the page gets besides the ticks, 30 times a second.
-
-    Attributes:
-        gate: Index into `messages.GATES`.
-        p_WH: (3,) position of the handle, m.
-        fault: Index into `messages.FAULTS`.
-        silent_s: Time for which the device's driver has said nothing new, s.
-        shed: Number of stages of work that are left out.
-        skipped: Ticks lost to stalls since the run began.
-    """
-
-    gate: int
-    p_WH: Sequence[float]
-    fault: int = 0
-    silent_s: float = 0.0
-    shed: int = 0
-    skipped: int = 0
 
 
 class LivePage:
@@ -173,15 +153,4 @@ class LivePage:
     def _show(self, now_s: float, outlook: Outlook) -> None:
         """Sends the ticks that were noted."""
         self._link.flush()
-        self._link.send(
-            self._ticks.take(
-                gate=outlook.gate,
-                fault=outlook.fault,
-                silent_s=outlook.silent_s,
-                shed=outlook.shed,
-                skipped=outlook.skipped,
-                clock_s=now_s,
-                camera=self.camera.numbers,
-                p_WH=outlook.p_WH,
-            )
-        )
+        self._link.send(self._ticks.take(outlook, now_s, self.camera.numbers))

@@ -92,6 +92,27 @@ class Telemetry:
     ticks: list[Tick]
 
 
+@dataclass(frozen=True)
+class Outlook:
+    """The state that the page gets besides the ticks, 30 times a second.
+
+    Attributes:
+        gate: Index into `GATES`.
+        p_WH: (3,) position of the handle, m.
+        fault: Index into `FAULTS`.
+        silent_s: Time for which the device's driver has said nothing new, s.
+        shed: Number of stages of work that are left out.
+        skipped: Ticks lost to stalls since the run began.
+    """
+
+    gate: int
+    p_WH: Sequence[float]
+    fault: int = 0
+    silent_s: float = 0.0
+    shed: int = 0
+    skipped: int = 0
+
+
 class TickBuffer:
     """Buffers the loop's ticks until they are sent.
 
@@ -116,33 +137,18 @@ class TickBuffer:
             self._end += _TICK.size
 
     def take(
-        self,
-        *,
-        gate: int,
-        fault: int,
-        silent_s: float,
-        shed: int,
-        skipped: int,
-        clock_s: float,
-        camera: Sequence[float],
-        p_WH: Sequence[float],
+        self, outlook: Outlook, clock_s: float, camera: Sequence[float]
     ) -> memoryview:
         """Returns the packet, valid until the next `note`, and begins the next one.
 
         Args:
-            gate: Index into `GATES`.
-            fault: Index into `FAULTS`.
-            silent_s: Time for which the device's driver has said nothing new, s.
-            shed: Number of stages of work that are left out.
-            skipped: Ticks lost to stalls since the run began.
+            outlook: State besides the ticks.
             clock_s: The loop's clock, s.
             camera: (12,) R_WC row by row and p_WC, m.
-            p_WH: (3,) position of the handle, m.
         """
-        counts = gate, fault, shed, skipped
-        _HEAD.pack_into(
-            self._bytes, 0, KIND, *counts, clock_s, silent_s, *camera, *p_WH
-        )
+        counts = outlook.gate, outlook.fault, outlook.shed, outlook.skipped
+        times_s = clock_s, outlook.silent_s
+        _HEAD.pack_into(self._bytes, 0, KIND, *counts, *times_s, *camera, *outlook.p_WH)
         packet = self._view[: self._end]
         self._end = _HEAD.size
         return packet

@@ -11,11 +11,9 @@ from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.device.backend import DeviceCommand, DeviceReading
 from drake_haptics.web.handle import PageHandle
 from drake_haptics.web.link import open_page_port
-from drake_haptics.web.live_page import LivePage, Outlook, look_from_the_front
-from drake_haptics.web.messages import NOT_KNOWN
+from drake_haptics.web.live_page import LivePage, look_from_the_front
+from drake_haptics.web.messages import NOT_KNOWN, Outlook
 
-# Until a page tells, the camera is this many radii in front of the workspace: at -y.
-_FIRST_DISTANCE = 4.0
 # A tick as `RunStatistics.latest`, of which only the wrench is known.
 _NO_FIGURES = (NOT_KNOWN,) * 5
 
@@ -64,7 +62,7 @@ class MouseDevice(PageHandle):
         self._p_WH = (X_WB @ X_BH).translation()
         self._page = LivePage(
             meshcat,
-            look_from_the_front(self._p_WH, _FIRST_DISTANCE * workspace_radius_m),
+            look_from_the_front(self._p_WH, workspace_radius_m),
             open_page_port(port),
         )
         self._start_s = monotonic()

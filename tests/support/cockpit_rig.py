@@ -36,7 +36,7 @@ class ScriptedPage:
     def __init__(self, script):
         self._script = {tick: list(asked) for tick, asked in script.items()}
         self.meshcat_url = "http://localhost:6999/"
-        self.camera = SimpleNamespace(X_WC=look_from_the_front([0, 0, 0.05], 0.4))
+        self.camera = SimpleNamespace(X_WC=look_from_the_front([0, 0, 0.05], 0.1))
         self.times, self.hellos, self.states, self.outlooks = [], [], [], []
 
     def note(self, time_s, latest, late_s):

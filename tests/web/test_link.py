@@ -15,19 +15,14 @@ import websocket
 
 from drake_haptics.web import link as page_link
 from drake_haptics.web.link import PageLink, open_page_port
-from drake_haptics.web.messages import TickBuffer
+from drake_haptics.web.messages import Outlook, TickBuffer
 
 BOUND_S = 120.0
 MESHCAT = "http://localhost:6999"
 HEAD = {
-    "gate": 3,
-    "fault": 0,
-    "silent_s": 0.0,
-    "shed": 0,
-    "skipped": 0,
+    "outlook": Outlook(gate=3, p_WH=(0, 0, 0)),
     "clock_s": 0.0,
     "camera": (1, 0, 0, 0, 0, 1, 0, -1, 0, 0, -0.4, 0),
-    "p_WH": (0, 0, 0),
 }
 # A loop that tells the number of its page's process, and goes on.
 LOOP = f"""

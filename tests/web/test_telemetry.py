@@ -10,20 +10,18 @@ from drake_haptics.web.messages import (
     GATES,
     KIND,
     LARGEST_DATAGRAM,
+    Outlook,
     TickBuffer,
     read_telemetry,
 )
 
 LATEST = (60e-6, 30e-6, 12, 3, -1e-3, 0.1, 0.2, 0.3, 1.0, 2.0, 3.0, 1.0)
 HEAD = {
-    "gate": 1,
-    "fault": 1,
-    "silent_s": 2.5,
-    "shed": 2,
-    "skipped": 70_000,
+    "outlook": Outlook(
+        gate=1, fault=1, silent_s=2.5, shed=2, skipped=70_000, p_WH=(0.1, 0.2, 0.3)
+    ),
     "clock_s": 1e5 + 1e-6,
     "camera": range(12),
-    "p_WH": (0.1, 0.2, 0.3),
 }
 
 
