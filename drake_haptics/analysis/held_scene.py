@@ -16,6 +16,7 @@ from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.preconditions import check_conversion
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.simulated_device import make_hand_path, place_base
 from drake_haptics.scene.schema import (
@@ -27,6 +28,7 @@ from drake_haptics.scene.schema import (
 )
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import RunError, make_simulator, run
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 # Shortest time in which a hand stops.
 _SHORTEST_STOP_S = 0.05
@@ -249,11 +251,13 @@ def _soften(coupling: CouplingParameters) -> CouplingParameters:
     return CouplingParameters(**softer)
 
 
-def build_without_scene_warnings(scene: Scene) -> HapticDiagram:
+def build_without_scene_warnings(
+    scene: Scene, device: HapticDevice | DeviceBackend | None = None
+) -> HapticDiagram:
     """Builds a scene without warnings: the analysis itself tells what is stable."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SceneWarning)
-        return BuildHapticDiagram(scene)
+        return BuildHapticDiagram(scene, device=device)
 
 
 def to_scene_pose(X_WF: RigidTransform) -> Pose:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -10,11 +9,10 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
-from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.schema import Scene
-from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import make_simulator, run
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
@@ -199,10 +197,7 @@ def _build(scene: Scene, motion: RecordedMotion) -> HapticDiagram:
         max_force_N=site.max_force_N,
         max_torque_Nm=site.max_torque_Nm,
     )
-    with warnings.catch_warnings():
-        # The stability of its coupling is measured anyway.
-        warnings.simplefilter("ignore", SceneWarning)
-        return BuildHapticDiagram(scene, device=device)
+    return build_without_scene_warnings(scene, device)
 
 
 def _read_wrench(tick: ReplayedTick) -> np.ndarray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import warnings
 from collections.abc import Iterator
 
 import numpy as np
@@ -14,6 +13,7 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from drake_haptics import _core
 from drake_haptics._core import FrameChange
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
@@ -22,9 +22,7 @@ from drake_haptics.evaluation.benchmark.loop.simulated_ticks import (
     observe_ticks,
 )
 from drake_haptics.evaluation.measuring.timing import clock_interval
-from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
-from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
@@ -42,14 +40,10 @@ class ThisLoop(SimulatedLoop):
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
         """Builds the loop, see `SimulatedLoop`."""
         super().__init__(problem, paced=paced)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SceneWarning)
-            self._haptic = self._build()
+        self._haptic = build_without_scene_warnings(problem.scene, self._make_device())
 
-    def _build(self) -> HapticDiagram:
-        return BuildHapticDiagram(
-            self._problem.scene, device=make_recorded_device(self._problem)
-        )
+    def _make_device(self) -> HapticDevice | DeviceBackend | None:
+        return make_recorded_device(self._problem)
 
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
@@ -69,9 +63,9 @@ class ThisLoop(SimulatedLoop):
 class BackendLoop(ThisLoop):
     """The whole loop with a `DeviceBackend` in Python, as a user writes it."""
 
-    def _build(self) -> HapticDiagram:
+    def _make_device(self) -> DeviceBackend:
         self._backend = _RecordedBackend(self._problem)
-        return BuildHapticDiagram(self._problem.scene, device=self._backend)
+        return self._backend
 
     def make_simulator(self) -> Simulator:
         """Returns a simulator at the beginning of the motion."""
@@ -82,8 +76,8 @@ class BackendLoop(ThisLoop):
 class SceneLoop(ThisLoop):
     """The scene as `drake-haptics run` has it: a simulated arm in a simulated hand."""
 
-    def _build(self) -> HapticDiagram:
-        return BuildHapticDiagram(self._problem.scene)
+    def _make_device(self) -> None:
+        """Leaves the device to the scene."""
 
 
 class _RecordedBackend(DeviceBackend):
