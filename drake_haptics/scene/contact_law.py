@@ -7,11 +7,10 @@ from collections.abc import Mapping
 from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
-from drake_haptics.scene.yaml_loading import make_hint
 
 LARGEST_DEFAULT_SKIN_M = 3e-4
 """Default skin where the hand's path leaves enough play, m."""
-_LAWS = ("penalty", "constraint")
+LAWS = ("penalty", "constraint")
 # Effects and material gains that act on the springs of the penalty law.
 _OF_PENALTY = ("shading", "braking")
 _GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
@@ -27,16 +26,6 @@ def calc_first_touch(contact: ContactParameters) -> float:
     if is_constraint(contact):
         return contact.skin_m or LARGEST_DEFAULT_SKIN_M
     return contact.tolerance_m
-
-
-def check_law(law: str) -> None:
-    """Checks the name of a law.
-
-    Raises:
-        SceneError: There is no such law.
-    """
-    if law not in _LAWS:
-        raise SceneError(f"contact.law is '{law}'; {make_hint(law, _LAWS)}")
 
 
 def check_constraint_law(

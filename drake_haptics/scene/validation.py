@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from drake_haptics.common.errors import SceneError
@@ -12,8 +12,8 @@ from drake_haptics.geometry.decomposition.decompose import METHODS
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.parsing.model_file import is_model_file
 from drake_haptics.scene.contact_law import (
+    LAWS,
     check_constraint_law,
-    check_law,
     is_constraint,
 )
 from drake_haptics.scene.schema import (
@@ -129,11 +129,7 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
         f"{where}.max_triangles",
         f"must be 4 or more, is {item.max_triangles}",
     )
-    require(
-        item.decomposition in METHODS,
-        f"{where}.decomposition",
-        f"is '{item.decomposition}'; {make_hint(item.decomposition, METHODS)}",
-    )
+    _require_known(item.decomposition, METHODS, f"{where}.decomposition")
     require(
         item.chord_error_m is None or is_model_file(item.mesh),
         f"{where}.chord_error_m",
@@ -150,27 +146,19 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
 
 def _check_contact(contact: ContactParameters) -> None:
     """Checks how contact is found and answered."""
-    check_law(contact.law)
+    _require_known(contact.law, LAWS, "contact.law")
     require_all_positive(
         contact, "contact", ["skin_m", "stiffness_N_per_m", "cluster_size_m"]
     )
     require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
-    require(
-        contact.clustering in _CLUSTERINGS,
-        "contact.clustering",
-        f"is '{contact.clustering}'; {make_hint(contact.clustering, _CLUSTERINGS)}",
-    )
+    _require_known(contact.clustering, _CLUSTERINGS, "contact.clustering")
     octree = contact.clustering == "octree"
     require(
         octree == (contact.cluster_size_m is not None),
         "contact.cluster_size_m",
         "is missing" if octree else "is only for clustering: octree",
     )
-    require(
-        contact.depth in _DEPTHS,
-        "contact.depth",
-        f"is '{contact.depth}'; {make_hint(contact.depth, _DEPTHS)}",
-    )
+    _require_known(contact.depth, _DEPTHS, "contact.depth")
     require(
         contact.max_walk_steps >= 1,
         "contact.max_walk_steps",
@@ -366,6 +354,11 @@ def require(condition: bool, where: str, complaint: str) -> None:
     """Raises SceneError about a key unless a condition holds."""
     if not condition:
         raise SceneError(f"{where} {complaint}")
+
+
+def _require_known(word: str, known: Collection[str], where: str) -> None:
+    """Raises SceneError unless a word is one of those that a key may have."""
+    require(word in known, where, f"is '{word}'; {make_hint(word, known)}")
 
 
 def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
