@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ import numpy as np
 
 from drake_haptics.common.one_line import count
 from drake_haptics.common.real_time import RealTimePacer
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 from drake_haptics.systems.device.rendered_force_hold import LIMITED, NOT_FINITE
@@ -278,23 +278,8 @@ class RunStatistics:
 
     def to_dict(self) -> RunFigures:
         """Returns all attributes by name, ready for JSON."""
-        return {
-            "ticks": self.ticks,
-            "duration_s": self.duration_s,
-            "tick_us": dataclasses.asdict(self.tick_us),
-            "contact_query_us": dataclasses.asdict(self.contact_query_us),
-            "contacts": dataclasses.asdict(self.contacts),
-            "clusters": dataclasses.asdict(self.clusters),
-            "max_force_N": self.max_force_N,
-            "max_torque_Nm": self.max_torque_Nm,
-            "max_penetration_m": self.max_penetration_m,
-            "least_distance_m": self.least_distance_m,
-            "limit_hits": self.limit_hits,
-            "non_finite_events": self.non_finite_events,
-            "energy_J": self.energy_J,
-            "shed_ticks": self.shed_ticks,
-            "lateness_us": self.lateness_us,
-        }
+        names = RunFigures.__annotations__
+        return to_plain_data({name: getattr(self, name) for name in names})
 
 
 def _largest_norm(vectors: np.ndarray) -> float:
