@@ -140,9 +140,6 @@ def find_exceeded_ratings(
     Args:
         coupling: K and B of both kinds.
         preset: The device; a rating that is not known is exceeded by nothing.
-
-    Returns:
-        Each rating that is exceeded.
     """
     found: list[BrokenBound] = []
     for kind in (_TRANSLATION, _ROTATION):

@@ -84,9 +84,6 @@ def make_touches(
     In a second the tool comes in from 10 mm off, presses 0.5 mm beyond first touch,
     slides 10 mm sideways and back while it sways by 0.1 rad, and leaves: below
     0.1 m/s and 1 rad/s.
-
-    Returns:
-        Motions, each (n, 4, 4) poses of the tool.
     """
     rng = np.random.default_rng(seed)
     search = SceneTracker(tool, [target], _SEARCH_STEP_M)

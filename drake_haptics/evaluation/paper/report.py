@@ -189,9 +189,6 @@ def _draw_pass(passed: PenPass) -> Picture:
 def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:
     """Writes the page as one HTML file, and each picture beside it as PNG.
 
-    Returns:
-        Paths of the pictures.
-
     Raises:
         OSError: A file cannot be written.
     """

@@ -128,11 +128,7 @@ class ForceScaling:
 
 
 def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
-    """Presses brushes of 1 to 256 teeth, all 40 mm wide, into a plate.
-
-    Returns:
-        Figures of the paper's clusters (of 8 mm), and of shared stiffness.
-    """
+    """Presses brushes of 1 to 256 teeth, all 40 mm wide, into a plate."""
     plate = make_plate()
     sets = [_touch(across, plate) for across in _TEETH_ACROSS]
     cluster = {

@@ -66,9 +66,6 @@ def write_decomposition(path: Path, mesh: Mesh, method: str, pieces: PieceData) 
 def read_decomposition(path: Path) -> tuple[Mesh, str, PieceData]:
     """Reads a file of `write_decomposition`.
 
-    Returns:
-        The mesh, the method and the pieces.
-
     Raises:
         DecompositionFileError: The file is not such a one or is damaged.
         OSError: It cannot be opened.

@@ -136,9 +136,6 @@ def winding_numbers(
         points: (q, 3) points.
         vertices: (n, 3) vertices.
         triangles: (m, 3) vertex indices.
-
-    Returns:
-        (q,) winding numbers.
     """
     result = np.empty(len(points))
     for i, point in enumerate(points):
