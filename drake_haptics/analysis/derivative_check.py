@@ -28,7 +28,7 @@ def check_derivatives(
     """Compares a Jacobian with central differences along one random direction.
 
     A Python system that calculates in doubles under AutoDiffXd loses derivatives
-    silently; this finds each row that differs by more than 1e-4 of itself.
+    silently; this finds each row with a relative error above 1e-4.
 
     Args:
         function: Function of a step (n,) from the point that returns the values (p,).

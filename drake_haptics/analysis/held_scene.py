@@ -36,7 +36,7 @@ _SHORTEST_STOP_S = 0.05
 # shortest time between them.
 _MOST_PLACES = 6
 _APART_S = 0.05
-# A loop that does not settle is tried with a softer coupling, so many times.
+# Number of softer couplings that are tried for a loop that does not settle.
 _MOST_SOFTENINGS = 8
 # A tool that moves no faster, m/s and rad/s, has settled.
 _SETTLED_SPEED = 5e-3

@@ -51,7 +51,7 @@ _BUFFER_BYTES = 4096
 def is_enter_pressed() -> bool:
     """Returns whether a line has been typed since the last call.
 
-    Where the input is no terminal nobody types.
+    It is always False where the input is not a terminal.
     """
     if sys.stdin is None or not sys.stdin.isatty():
         return False
@@ -94,7 +94,7 @@ def _build(
     device: DeviceBackend | None,
     recorder: TickRecorder | None,
 ) -> HapticDiagram:
-    """Builds the diagram under the bar."""
+    """Builds the diagram, with a bar for each mesh that is cut."""
     quiet = not console.is_terminal
     with Progress(console=console, transient=True, disable=quiet) as bars:
         tasks: dict[str, TaskID] = {}

@@ -180,7 +180,7 @@ class Steering:
         """Undoes all changes, after a run has failed with them.
 
         Returns:
-            Whether there were any, in a run that nobody feels: otherwise it is over.
+            Whether there were any; False ends the run, as where a device is held.
         """
         changes = self.changes
         if changes.scene is changes.file or self._holding.name == DEVICE:

@@ -25,7 +25,7 @@ Peer = tuple[str, int]
 
 # Longer than any packet of the protocol: a longer one is cut, and refused for it.
 _BUFFER_BYTES = 2048
-# A tick looks at so many packets and leaves the rest: a host sends one or two, and a
+# A tick reads at most this many packets: a host sends one or two, and a
 # flood must not keep the loop from its next tick.
 _MAX_PACKETS_PER_TICK = 64
 _WRAP = 1 << 32
@@ -37,7 +37,7 @@ _ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
 # A host that is silent for longer has gone, or never was: a forged address must not be
 # sent states for ever.
 _FORGETS_AFTER_NS = 5_000_000_000
-# Faults are listed with their times up to the latest so many; they are all counted.
+# Only the latest of the faults are listed with their times; all are counted.
 _MAX_LISTED = 1000
 # The gate scales a vector down to its limit, which rounding may miss by a few bits.
 _ROUNDING = 1.0 + 1e-12
@@ -87,7 +87,7 @@ class DeviceDriver:
         rate_hz: Ticks per second, Hz.
         bind: Address to listen at; only this machine can reach 127.0.0.1.
         port: UDP port to listen at; 0 lets the system choose.
-        clock_ns: Reads a clock that never goes back, nor rests with the machine, ns.
+        clock_ns: Reads a clock that never goes back and runs during suspension, ns.
 
     Raises:
         HapticsError: The address or port is not available.
@@ -395,7 +395,7 @@ class DriverSocket:
             except BlockingIOError:
                 return
             except ConnectionError:
-                continue  # some systems tell here that a state found nobody
+                continue  # some systems report here that nobody received a state
 
     def send(self, packet: bytes, peer: Peer) -> None:
         """Sends a packet; one that cannot leave is lost, as on any network."""

@@ -83,7 +83,7 @@ class LogDiff:
         same_meshes: Whether the mesh files were the same.
         settings: Differences of the scenes, each with its key and both values.
         quantities: Everything that was compared: not the clocks, which differ in every
-            run, nor what a device tells besides its handle, which a replay does not
+            run, nor what a device reports besides its handle, which a replay does not
             have.
     """
 

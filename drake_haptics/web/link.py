@@ -75,7 +75,7 @@ class PageLink:
         self._url = f"http://localhost:{self._listener.getsockname()[1]}/"
         parts = urlsplit(meshcat_url)
         self._origin = f"{parts.scheme}://{parts.netloc}"
-        # Messages that a process is told that takes the place of another, by name.
+        # Messages that a new process gets when it replaces another, by name.
         self._lasting: dict[str, bytes] = {}
         self._start()
 

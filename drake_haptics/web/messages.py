@@ -200,14 +200,14 @@ TAKE = "take"
 """Asks that its page be the one that drives; any page may."""
 
 REFUSED = "refused"
-"""The loop is told {REFUSED: 1} for a message that is not one of those allowed."""
+"""The loop gets {REFUSED: 1} for a message that is not one of those allowed."""
 
 
 def _is_number(value: object) -> bool:
     """Tells whether it is a finite number, not a truth value."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    # False for NaN, too.
+    # Also False for NaN.
     return abs(value) <= _LARGEST_NUMBER
 
 

@@ -38,7 +38,7 @@ def write_changes(changes: dict[str, Any], indent: str = "") -> str:
 
 
 _CLOSE_S = 0.5
-# Time without a word after which a loop stands still; pages are told as often, s.
+# A loop that sends nothing for so long stands still; pages are told as often, s.
 _QUIET_S = 0.5
 _STDIN = 0
 

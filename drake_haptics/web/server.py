@@ -106,7 +106,7 @@ class PageServer:
         )
 
     def tell(self, name: str, message: str) -> None:
-        """Tells every page something, and those that come later, too.
+        """Tells all pages something, also those that open later.
 
         Args:
             name: Name of the message; a newer one of the same name replaces it.

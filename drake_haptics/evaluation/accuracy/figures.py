@@ -15,7 +15,7 @@ from drake_haptics.report.plain_data import (
     to_plain_data,
 )
 
-# Reason why a stiffness is not known that nobody asked for.
+# Reason for an unknown stiffness that was not asked for.
 NOT_SOUGHT = "not sought"
 
 

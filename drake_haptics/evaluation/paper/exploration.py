@@ -60,7 +60,7 @@ def plan_exploration(
         tool: Pieces of the tool.
         objects: Objects at rest.
         places: Places in their order, at least one.
-        reach_m: Distance that the tool may come in before it touches, m.
+        reach_m: Distance that the tool may travel before it touches, m.
 
     Returns:
         Path X_WT over time, below about 0.15 m/s and 1.5 rad/s.

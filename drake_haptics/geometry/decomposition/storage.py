@@ -151,7 +151,7 @@ def write_archive(
 ) -> None:
     """Writes facts (JSON data) and arrays to an .npz file, atomically.
 
-    The file is written beside its place under a name of its own, flushed to the
+    The file is written to the same folder under another name, flushed to the
     disk and renamed: a reader sees the old file or the new one, also when this
     process is killed or another one writes the same file.
 

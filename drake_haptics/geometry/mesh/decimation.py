@@ -27,7 +27,7 @@ _OPTIONS = (0, 16)
 
 
 def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
-    """Returns the mesh with at most so many triangles, as alike as they allow.
+    """Returns the mesh with at most `max_triangles`, as close to it as they allow.
 
     A closed part stays closed, and no solid is lost. The report of the
     result has the `decimation_error_m`, and the finding "decimated".

@@ -172,5 +172,5 @@ def find_origin_beside(mesh: Mesh) -> float | None:
 
 
 def describe_origin_beside(name: str, beside_m: float) -> str:
-    """Returns the words that a mesh has its origin far beside it."""
+    """Says that the origin of a mesh is far from it."""
     return f"the origin of {name} is {length(beside_m)} beside the mesh"
