@@ -203,8 +203,8 @@ def run_session(
         elif device is not None:
             try:
                 backend = stack.enter_context(open_device(device, scene, meshcat))
-            except NoPageError as error:
-                raise DeviceError(f"{error}: leave --headless out") from error
+            except NoPageError as missing:
+                raise DeviceError(f"{missing}: leave --headless out") from missing
             if backend.shows_force:
                 backend = take_device(backend, scene)
         with timer or nullcontext(), naming(str(device), DeviceError):
