@@ -132,7 +132,7 @@ $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e ".[test]"
 	@touch $@ $(STAMP)
 
-# Fuzzes the core until a fault is found or the time is over; see docs/verification/fuzzing.md.
+# Fuzzes the core until a fault is found or the time is over; see docs/verification/numerics.md.
 FUZZ ?= pair
 FUZZ_SECONDS ?= 900
 fuzz: $(STAMP)-test

@@ -29,7 +29,7 @@ var Scorer = (() => {
     "glossary#units": "damping stiffness unit",
     "gradients": "AutoDiff Jacobian linearize",
     "install": "pip wheel macOS Windows Python version",
-    "verification/no-fall-through": "thin wall plate tunnel",
+    "verification/contact-laws": "fall through thin wall plate tunnel",
     "paper": "citing cite reference author bibtex",
     "record-replay": "record log a run CSV",
     "stability": "network delay latency vibration passive",

@@ -20,7 +20,11 @@ from page_stamp import amend_page, write_page
 
 from drake_haptics.cli.console import progress_bar
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, Row
-from drake_haptics.evaluation.accuracy.knobs import list_settings, make_reference
+from drake_haptics.evaluation.accuracy.knobs import (
+    AS_IT_IS,
+    list_settings,
+    make_reference,
+)
 from drake_haptics.evaluation.accuracy.peers.run import add_peers
 from drake_haptics.evaluation.accuracy.plot import draw_study
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
@@ -48,9 +52,9 @@ from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
 _DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE = _DOCS / "verification" / "accuracy.md"
-ADVICE_PAGE = _DOCS / "accuracy.md"
-SCENES = ("cup_spoon", "rubbed_sphere")
+PAGE = _DOCS / "accuracy.md"
+# Each scene, and what the keys of its rows begin with.
+SCENES = {"cup_spoon": "", "rubbed_sphere": "effects."}
 COLUMNS_NAME, ADVICE_NAME = "columns", "advice"
 # Knob, setting, and times of tick and core are before the errors; energy is the last.
 ERRORS = slice(4, 8)
@@ -67,14 +71,21 @@ def make_columns() -> str:
     return "\n".join(f"- **{c.head}**, {c.unit}: {c.meaning}" for c in COLUMNS) + "\n"
 
 
-def make_prices(study: AccuracyStudy) -> str:
-    """Returns the price list of a scene with its sentences."""
+def make_prices(study: AccuracyStudy, keys: str = "") -> str:
+    """Returns the price list of a scene with its sentences.
+
+    Args:
+        study: Figures of the scene.
+        keys: Beginning of the keys that have rows. The scene as it is has the first
+            one, and its own settings no others.
+    """
     columns = get_columns(study)
     heads = [f"{column.head}, {column.unit}" for column in columns]
     rows = [
         [knob, _make_label(row), *make_cells(row, columns)]
         for knob, group in group_rows(study)
         for row in group
+        if knob == AS_IT_IS.knob or (knob.startswith(keys) and not row.is_scene)
     ]
     parts = [
         " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
@@ -147,7 +158,7 @@ def with_errors(page: str, name: str, errors: dict[tuple[str, str], list[str]]) 
 
 
 def _make_label(row: Row) -> str:
-    """Returns a setting; bold is the scene's own, † another model."""
+    """Returns a setting; the scene itself is bold, and † is another model."""
     if row.is_scene:
         return f"**{row.setting.label}**"
     return (
@@ -185,16 +196,13 @@ def main() -> None:
     studies = {name: measure_prices(name, arguments.store) for name in SCENES}
     parts = {
         COLUMNS_NAME: make_columns(),
-        **{name: make_prices(study) for name, study in studies.items()},
+        **{name: make_prices(study, SCENES[name]) for name, study in studies.items()},
+        ADVICE_NAME: make_advice(studies),
     }
     print("\n".join(parts.values()))
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
         write_page(PAGE, with_parts(page, parts), __file__)
-        advice = replace_part(
-            ADVICE_PAGE.read_text(encoding="utf-8"), make_advice(studies), ADVICE_NAME
-        )
-        ADVICE_PAGE.write_text(advice, encoding="utf-8")
         for name, study in studies.items():
             draw_study(study).savefig(get_picture(name), dpi=_DPI)
 

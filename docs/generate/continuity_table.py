@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from continuity_rig import CAUSES, JUMP, Steps, measure
 from continuity_scenes import SCENES, make_scene
 from continuity_walk import EPISODE_STEPS
+from page_parts import replace_part, to_markdown
 from page_stamp import write_page
 from press_rig import GAINS, LARGEST_FORCE_N
 from wrench_chain import METHODS
@@ -26,47 +27,45 @@ PAGE = Path(__file__).parents[2] / "docs" / "verification" / "continuity.md"
 TITLES = ("scene", "method", "force", "99.9 %", "torque", "99.9 %", f"over {JUMP:g}")
 TITLES += (*CAUSES, "of the largest", "chain alone")
 
-_TEXT = """\
-# How much the wrench changes in a micrometer
+# Columns of the page; causes are summed up below its table.
+SHOWN = ("scene", "method", "force", "99.9 %", "torque", "99.9 %", f"over {JUMP:g}")
+SHOWN += ("of the largest", "chain alone")
+_KEPT = [*range(len(SHOWN) - 2), len(TITLES) - 2, len(TITLES) - 1]
+_CAUSES = range(len(SHOWN) - 2, len(TITLES) - 2)
 
-**Does the force jump when the tool moves by a micrometer?** Rarely: about one step in a
-thousand changes it by more than ten times what the spring explains.
 
-The wrench should be a Lipschitz function of the pose: in a hand, a force that jumps is
-a knock. Here tools take {steps:,} random steps of about a micrometer in contact with
-solids, around {episodes} random poses each, nowhere deeper than what carries
-{force:g} N. This page is written by
+def describe_walk(steps: int) -> str:
+    """Returns how the steps are made, as a sentence."""
+    return (
+        f"Here tools take {steps:,} random steps of about a micrometer in contact with"
+        f" solids, around {-(-steps // EPISODE_STEPS)} random poses each, nowhere"
+        f" deeper than what carries {LARGEST_FORCE_N:g} N.\n"
+    )
 
-    python docs/generate/continuity_table.py --steps {steps} --jobs 3 --write
 
-- **force**: largest |ΔF| / (k |Δx|) of a step, where |Δx| is the largest displacement
-  of a point of the tool; **torque**: largest |Δτ| / (k L |Δx|) about the tool's middle,
-  L being the tool's largest radius about it. Both without damping. **99.9 %**: what all
-  but one step in a thousand stay below. One spring that is pressed has a ratio of 1.
-- **over {jump:g}**: steps with a ratio above {jump:g}, then how many of them the
-  contact query explains, for a contact changed by more than {jump:g} times the motion:
-  a pair of pieces **came or went** while it was compressed, its **distance** jumped,
-  its **normal** turned (times its compression), its **point** shifted (times its
-  compression over L), its **patch** changed (its compression times the share of its
-  extent, or its flushness); and how many it does not, so that the **clusters** did it.
-  Or nothing jumped and the wrench is just **steep**: no 32nd part of the step has half
-  of the change.
-- **of the largest**: the cause of the largest ratio.
-- **chain alone**: largest ratio of a change of the wrench to the largest change of what
-  it is made of, pose or contact: what clustering multiplies a change by.
+def make_steps(rows: Sequence[Sequence[str]]) -> str:
+    """Returns the page's table, and what causes the steps above the limit.
 
-{rows}
+    Args:
+        rows: Rows of `row`.
+    """
+    table = to_markdown([SHOWN, *([cells[i] for i in _KEPT] for cells in rows)])
+    causes = [["cause", *METHODS]]
+    for i, cause in zip(_CAUSES, CAUSES, strict=True):
+        by_method = (sum(int(x[i]) for x in rows if x[1] == m) for m in METHODS)
+        causes.append([cause, *(f"{count:,}" for count in by_method)])
+    title = f"Causes of all steps over {JUMP:g}, by method:"
+    return f"{table}\n{title}\n\n{to_markdown(causes)}"
 
-The scattered tips each press into a slab of their own, so that their contacts only ever
-glide: what jumps there is the clustering. Elsewhere both methods see the same contacts
-on the same walk. Somewhere inside every corner two ways out are equally long; there the
-depth of a pair of pieces goes over to the shorter one and its normal turns, which no
-clustering mends.
 
-The word after a scene's name is that of its gains:
-
-{gains}
-"""
+def describe_gains() -> str:
+    """Returns the gains that the names of scenes end with."""
+    return "".join(
+        f"- {name}: tolerance {1e3 * g.tolerance_m:g} mm, stiffness"
+        f" {g.stiffness_N_per_m:g} N/m, δ {1e3 * g.delta_m:g} mm\n"
+        for name, g in GAINS.items()
+        if name in ("default", "sinking", "soft")
+    )
 
 
 def row(key: str, method: str, found: Steps) -> list[str]:
@@ -89,10 +88,6 @@ def _measure(key: str, steps: int, methods: tuple[str, ...]) -> dict[str, Steps]
     return measure(make_scene(key), steps, methods)
 
 
-def _line(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cells) + " |"
-
-
 def main() -> None:
     """Prints the table, and writes the page if asked to."""
     parser = argparse.ArgumentParser(
@@ -106,8 +101,8 @@ def main() -> None:
         "--write", action="store_true", help="write docs/verification/continuity.md"
     )
     args = parser.parse_args()
-    lines = [_line(TITLES), "|" + "---|" * len(TITLES)]
-    print(*lines, sep="\n", flush=True)
+    rows = []
+    print(*TITLES, sep=" | ", flush=True)
     with ProcessPoolExecutor(args.jobs) as pool:
         jobs = [
             pool.submit(_measure, key, args.steps, tuple(args.methods))
@@ -115,26 +110,18 @@ def main() -> None:
         ]
         for key, job in zip(args.scenes, jobs, strict=True):
             for method, found in job.result().items():
-                lines.append(_line(row(key, method, found)))
-                print(lines[-1], flush=True)
+                rows.append(row(key, method, found))
+                print(*rows[-1], sep=" | ", flush=True)
     if args.write:
-        used = {name: GAINS[name] for name in ("default", "sinking", "soft")}
-        write_page(
-            PAGE,
-            _TEXT.format(
-                steps=args.steps,
-                episodes=-(-args.steps // EPISODE_STEPS),
-                force=LARGEST_FORCE_N,
-                jump=JUMP,
-                rows="\n".join(lines),
-                gains="\n".join(
-                    f"- {name}: tolerance {1e3 * g.tolerance_m:g} mm, stiffness "
-                    f"{g.stiffness_N_per_m:g} N/m, δ {1e3 * g.delta_m:g} mm"
-                    for name, g in used.items()
-                ),
-            ),
-            __file__,
-        )
+        parts = {
+            "walk": describe_walk(args.steps),
+            "steps": make_steps(rows),
+            "gains": describe_gains(),
+        }
+        page = PAGE.read_text(encoding="utf-8")
+        for name, text in parts.items():
+            page = replace_part(page, text, name)
+        write_page(PAGE, page, __file__)
 
 
 if __name__ == "__main__":

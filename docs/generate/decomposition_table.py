@@ -22,6 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from hull_truth import deepest_outside, deepest_surface, lost_share
 from mesh_samples import REAL_MESHES
+from page_parts import replace_part, to_markdown
 from page_stamp import write_page
 from shapes import SHAPES
 from shapes.organ import make_organ
@@ -29,9 +30,7 @@ from shapes.organ import make_organ
 from drake_haptics import Mesh, decompose, load_mesh
 from drake_haptics.geometry.mesh.decimation import decimate
 
-PAGE = (
-    Path(__file__).resolve().parents[2] / "docs" / "verification" / "decomposition.md"
-)
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "decomposition.md"
 # Table 1 of Kim, Otaduy, Lin and Manocha, for meshes of the same kind and size.
 PAPER = {"torus": 67, "cup": 190, "spoon": 78, "hammer": 425, "organ": 9913}
 PAPER |= {
@@ -85,6 +84,8 @@ TITLES = (
     "time",
     "peak memory",
 )
+# The page has these, and sums up the others.
+SHOWN = TITLES[:4] + TITLES[5:9] + TITLES[10:11]
 # Within this share of the mesh's size a triangle is on its facet.
 ON_FACET = 1e-6
 
@@ -177,14 +178,21 @@ def row(result: dict[str, Any]) -> list[str]:
     ]
 
 
-def write_table(rows: Sequence[Sequence[str]]) -> None:
-    """Puts the table into the page, between its heading and the text after it."""
-    lines = ["| " + " | ".join(TITLES) + " |"]
-    lines.append("|---" + "|--:" * (len(TITLES) - 1) + "|")
-    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
-    before, _, rest = PAGE.read_text(encoding="utf-8").partition("\n| mesh |")
-    after = rest.partition("\n\n")[2]
-    write_page(PAGE, before + "\n" + "\n".join(lines) + "\n\n" + after, __file__)
+def make_table(rows: Sequence[Sequence[str]]) -> str:
+    """Returns the page's table, and a sentence on the columns that it leaves out."""
+    by_title = [dict(zip(TITLES, cells, strict=True)) for cells in rows]
+    shown = [[cells[title] for title in SHOWN] for cells in by_title]
+    lost = max(_number(x["lost"]) for x in by_title if x["lost"] != "–")
+    peak = max(_number(x["peak memory"]) for x in by_title)
+    return (
+        f"{to_markdown([SHOWN, *shown])}\nOf no mesh in exact pieces more than"
+        f" {lost:.0e} of the area lies on no facet of its piece, and no cut took more"
+        f" than {peak:.0f} MiB of memory, with the process that reads the mesh.\n"
+    )
+
+
+def _number(cell: str) -> float:
+    return float(cell.replace(",", "").split()[0])
 
 
 def main() -> None:
@@ -212,7 +220,8 @@ def main() -> None:
         rows.append(row(json.loads(answer.stdout)))
         print("  ".join(rows[-1]), flush=True)
     if args.write:
-        write_table(rows)
+        page = PAGE.read_text(encoding="utf-8")
+        write_page(PAGE, replace_part(page, make_table(rows), "meshes"), __file__)
 
 
 if __name__ == "__main__":

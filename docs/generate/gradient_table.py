@@ -204,12 +204,8 @@ def cells(row: Row) -> list[str]:
         row.method,
         str(row.num_states),
         f"{changing}, {unsettled}",
-        *(_quantiles(errors) for errors in row.errors.values()),
+        *(f"{max(errors):.0e}" for errors in row.errors.values()),
     ]
-
-
-def _quantiles(errors: list[float]) -> str:
-    return " / ".join(f"{q:.0e}" for q in np.quantile(errors, [0.5, 0.99, 1.0]))
 
 
 def rows(count: int) -> Iterator[Row]:

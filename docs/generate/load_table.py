@@ -18,7 +18,7 @@ from drake_haptics._core import penalty_force, share_stiffness, thin_contacts
 from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.timing import describe_machine
 
-PAGE = Path(__file__).parents[2] / "docs" / "verification" / "late-ticks.md"
+PAGE = Path(__file__).parents[2] / "docs" / "accuracy.md"
 HEAD = ["scene", "left out", "contacts", "that push", "query, µs", "the rest, µs"]
 SCENES = ("spoon on cup", "peg in hole", "wrench in machine room")
 # What is left of the reach, and the cell as a share of the tool's size.

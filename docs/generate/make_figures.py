@@ -3,7 +3,7 @@
 Hours, on a machine that does nothing else: times are among the figures. It says what
 comes next and how long that takes. Parts of names take some pages alone:
 
-python docs/generate/make_figures.py sliding stability
+python docs/generate/make_figures.py wrenches stability
 python docs/generate/make_figures.py --list
 
 Commit before, and do not edit meanwhile: each page says at which commit it was made.
@@ -64,7 +64,7 @@ FIGURES = (
     _table("stability-theory", "boundary", 1),
     _table("verification/wrenches", "wrench", 1),
     _table("verification/hard-cases", "hard_cases", 3),
-    _table("verification/sliding", "sliding", 2),
+    _table("verification/continuity", "sliding", 2),
     _table("verification/contact-laws", "law", 4),
     _table("gradients", "gradient", 5),
     _table("gradients", "loop_gradient", 2),
@@ -74,11 +74,11 @@ FIGURES = (
     _table("troubleshooting", "symptom", 1),
     _table("verification/continuity", "continuity", 30, "--jobs", "2"),
     _table(
-        "verification/no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"
+        "verification/contact-laws", "press", 150, "--points", "1000", "--jobs", "2"
     ),
     _table("comparison", "thread", 3, timed=True),
-    _table("verification/decomposition", "decomposition", 10, timed=True),
-    _table("verification/late-ticks", "load", 1, timed=True),
+    _table("decomposition", "decomposition", 10, timed=True),
+    _table("accuracy", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",
         ((f"{_PROGRAMS}/tick_log_costs.py", "--write"),),
@@ -91,10 +91,10 @@ FIGURES = (
         20,
         timed=True,
     ),
-    _table("verification/accuracy", "accuracy", 15, timed=True),
-    _table("verification/paper", "paper", 3, *_MESHES, timed=True),
+    _table("accuracy", "accuracy", 15, timed=True),
+    _table("paper", "paper", 3, *_MESHES, timed=True),
     Figures(
-        "docs/verification/benchmarks.md",
+        "docs/benchmarks.md",
         (
             ("-c", _BENCH, "bench", *_MESHES, "--json", _BENCH_FIGURES),
             (f"{_PROGRAMS}/write_docs.py", _BENCH_FIGURES),

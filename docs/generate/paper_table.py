@@ -1,4 +1,4 @@
-"""Writes the paper's evaluation, made again, into docs/verification/paper.md.
+"""Writes the paper's evaluation, made again, into docs/paper.md.
 
 python docs/generate/paper_table.py --write --meshes FOLDER
 
@@ -33,9 +33,10 @@ from drake_haptics.evaluation.paper.report import (
 from drake_haptics.report.page import draw_png
 
 _DOCS = Path(__file__).parents[2] / "docs"
-PAGE = _DOCS / "verification" / "paper.md"
-SUMMARY_PAGE = _DOCS / "paper.md"
+PAGE = _DOCS / "paper.md"
 _DPI, _COLORS = 80, 128
+# A section whose tables are all in its picture.
+_DRAWN = ("analysis",)
 # Heads of columns, and words of sentences, in which times are.
 _TIMED_COLUMN = re.compile(r"µs|seconds|Hz|under 1 ms|^(query|force|whole tick)$")
 _TIMED_SENTENCE = re.compile(r"µs|time (?:that )?grows|takes .* % more")
@@ -54,8 +55,9 @@ def show_section(section: Section) -> str:
             parts.append(f"### {block.title}\n")
         lines = (f"- **{s.verdict}**: {s.text}\n" for s in block.statements)
         parts.append("".join(lines))
-        parts += [f"![{p.alt}](../{file_of(p)})\n" for p in block.pictures]
-    parts += [table.to_markdown() for table in section.tables]
+        parts += [f"![{p.alt}]({file_of(p)})\n" for p in block.pictures]
+    if section.part not in _DRAWN:
+        parts += [table.to_markdown() for table in section.tables]
     return "\n".join(parts)
 
 
@@ -139,10 +141,8 @@ def main() -> None:
     if arguments.keep_times:
         amend_page(PAGE, page, __file__, "all but times and pictures")
         return
+    page = replace_part(page, make_summary(evaluation), "summary")
     write_page(PAGE, page, __file__)
-    summary = SUMMARY_PAGE.read_text(encoding="utf-8")
-    text = make_summary(evaluation)
-    SUMMARY_PAGE.write_text(replace_part(summary, text, "summary"), encoding="utf-8")
     write_pictures(evaluation)
 
 

@@ -24,6 +24,7 @@ from press_cells import (
     row,
     run_points,
 )
+from press_page import MOTIONS as PAGE_MOTIONS
 from press_page import write_presses
 from press_rig import GAINS, MOTIONS
 from press_tools import make_tools
@@ -49,7 +50,7 @@ def main() -> None:
         help="point i is met by tool i modulo their number",
     )
     parser.add_argument(
-        "--motions", nargs="*", default=["press", "jab"], choices=MOTIONS
+        "--motions", nargs="*", default=[*PAGE_MOTIONS], choices=MOTIONS
     )
     parser.add_argument("--gains", nargs="*", default=[*GAINS], choices=GAINS)
     parser.add_argument("--jobs", type=int, default=1, help="processes")
@@ -57,9 +58,11 @@ def main() -> None:
     parser.add_argument(
         "--write",
         action="store_true",
-        help="write docs/verification/no-fall-through.md",
+        help="write docs/verification/contact-laws.md",
     )
     args = parser.parse_args()
+    if args.write and {*args.motions} != {*PAGE_MOTIONS}:
+        parser.error(f"--write needs --motions {' '.join(PAGE_MOTIONS)}")
     for name in args.solids:
         if find_mesh(name) is None:
             print(f"{name} is not beside the repository: skipped", file=sys.stderr)
@@ -79,7 +82,7 @@ def main() -> None:
             if args.failures:
                 _note(args.failures, cell, verdicts)
     if args.write:
-        write_presses(rows, args.points, args.tools, args.seed)
+        write_presses(rows, args.points)
 
 
 def _run(

@@ -3,7 +3,7 @@
 python docs/generate/readme_tables.py --write
 
 The scenes are measured, in two minutes, on a machine that does nothing else. The
-loops are taken from docs/verification/benchmarks.md, which write_docs.py writes.
+loops are taken from docs/benchmarks.md, which write_docs.py writes.
 """
 
 from __future__ import annotations
@@ -26,13 +26,12 @@ BENCHMARKS = ROOT / "docs" / "benchmarks.md"
 # The first is the one of `make demo`.
 SCENES = ("cup_spoon", *(name for name in list_scenes() if name != "cup_spoon"))
 DURATION_S = 10.0
-# Rows of docs/verification/benchmarks.md, and what they are called here.
+# Rows of docs/benchmarks.md, and what they are called here.
 LOOPS = {
-    "drake_haptics, your own backend, paced": "a device of your own, by the clock",
-    "drake_haptics, your own plant, paced": "a discrete plant of your own,"
-    " by the clock",
-    "drake_haptics, your own backend": "a device of your own",
-    "drake_haptics, your own plant": "a discrete plant of your own",
+    "drake_haptics, your own backend, paced": "your own device, in real time",
+    "drake_haptics, your own plant, paced": "your own discrete plant, in real time",
+    "drake_haptics, your own backend": "your own device",
+    "drake_haptics, your own plant": "your own discrete plant",
     "drake_haptics, native part": "the C++ core alone",
     "Drake, bushing, TAMSI": "Drake: bushing and point contact, TAMSI",
     "MuJoCo, mj_step": "MuJoCo: `mj_step`, timed in C",
@@ -85,23 +84,21 @@ def make_scenes() -> str:
         "contact query",
         "whole tick",
         "p99",
-        "as fast as it can",
+        "without waiting",
     ]
     return (
-        f"{to_markdown([head, *rows])}\nTool on object. Query and"
-        f" whole tick: medians of {DURATION_S:g} s at 1 kHz by the clock, as a device"
-        " needs it, and 99th percentile, interruptions by the machine included. Last:"
-        " the median where no tick waits, as `--headless` runs."
-        f" {machine['processor']}, {machine['cores']} cores, shared with others: yours"
-        f" differ.\n\n{make_stamp(__file__, describe_commit())}\n"
+        f"{to_markdown([head, *rows])}\nTriangles and pieces: tool on object. Contact"
+        f" query and whole tick: medians of {DURATION_S:g} s at 1 kHz in real time, as"
+        " with a device; p99: of the whole tick, with interruptions by the operating"
+        " system. Last: the median where no tick waits, as `--headless` runs."
+        f" {machine['processor']}, {machine['cores']} cores, shared with others."
+        f"\n\n{make_stamp(__file__, describe_commit())}\n"
     )
 
 
 def make_loops() -> str:
     """Returns whole ticks as users build them, and of others, from their page."""
-    found = read_rows(
-        "verification/benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs"
-    )
+    found = read_rows("benchmarks.md", "Whole ticks of the 1 kHz loop, cup_spoon: µs")
     by_name = {row[0]: row for row in found}
     rows = [
         [called, *(f"{x} µs" for x in by_name[name][1:4])]
@@ -110,9 +107,10 @@ def make_loops() -> str:
     ]
     head = ["one tick of `cup_spoon`", "median", "p99", "p99.9"]
     return (
-        f"{to_markdown([head, *rows])}\nThe same pieces in all. By the clock: each"
-        " tick waits for its millisecond, as a device needs it; the others run as fast"
-        " as they can. Interruptions by the machine are left out.\n"
+        f"{to_markdown([head, *rows])}\nAll rows have contact of the same convex"
+        " pieces. In real time, each tick begins at its millisecond, as with a device;"
+        " the other rows do not wait. Interruptions by the operating system are not"
+        " counted.\n"
     )
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
-from page_parts import make_parser, to_markdown
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from press_rig import GAINS
 from scipy.spatial.transform import Rotation
@@ -27,7 +27,7 @@ from slide_scenes import (
 
 from drake_haptics import _core
 
-PAGE = Path(__file__).parents[2] / "docs" / "verification" / "sliding.md"
+PAGE = Path(__file__).parents[2] / "docs" / "verification" / "continuity.md"
 HEIGHTS_M = (1e-3, -5e-4, -1.2e-3)
 DELTAS_M = (1e-3, 2.5e-3, 5e-3, 1e-2, 2e-2, 4e-2)
 UP = np.array([0.0, 0.0, 1.0])
@@ -35,18 +35,6 @@ UP = np.array([0.0, 0.0, 1.0])
 _LEAST_RIPPLE = 1e-4
 
 _TEXT = """\
-# Sliding over seams
-
-**Does a person feel the seams between the pieces of a flat face?** No: where contacts
-share stiffness, as they do by default, the force has no ripple, and every tick has a
-contact.
-
-A tool is held level at a height over a flat face that is cut into pieces, and slides.
-The face is one plane, so each contact should have its normal and the nearest its
-distance, and the force should stay as it is. This page is written by
-
-    python docs/generate/sliding_table.py --write
-
 {slides} slides: {lost} ticks without a contact; the nearest contact's distance errs by
 {distance_um:.1e} µm at most, and a component of a normal by {normal:.1e}. Where
 contacts share stiffness, the normal force ripples by {shared:.3f} % (largest less
@@ -58,7 +46,6 @@ clusters of their own, and each pushes with its whole depth: a tool that is larg
 δ and than the pieces is pushed by as many clusters as it happens to cover. {smooth}
 
 {rows}
-
 Tolerance {tolerance:g} mm, stiffness {stiffness:g} N/m, 0.1 m/s.
 """
 
@@ -136,8 +123,8 @@ def make_rows(slides: Sequence[Slide]) -> list[list[str]]:
     return [HEAD, *rows]
 
 
-def make_page(slides: Sequence[Slide]) -> str:
-    """Returns the text of the page."""
+def make_seams(slides: Sequence[Slide]) -> str:
+    """Returns the part of the page."""
     rows = make_rows(slides)
     rippled = {row[1] for row in rows[1:]}
     smooth = sorted({one.tool for one in slides} - rippled)
@@ -151,14 +138,14 @@ def make_page(slides: Sequence[Slide]) -> str:
         shared=100.0 * max(one.shared for one in slides),
         sideways=100.0 * max(one.sideways for one in slides),
         smooth=f"Tools that feel no ripple: {', '.join(smooth)}.",
-        rows=to_markdown(rows).rstrip(),
+        rows=to_markdown(rows),
         tolerance=1e3 * gains.tolerance_m,
         stiffness=gains.stiffness_N_per_m,
     )
 
 
 def main() -> None:
-    """Prints the page, and writes it if asked to."""
+    """Prints the part, and with --write puts it into the page."""
     write = make_parser(__doc__, PAGE).parse_args().write
     scenes = [
         ("50 pieces", fifty_pieces(), fifty_pieces_path, list(make_slide_tools())),
@@ -172,10 +159,11 @@ def main() -> None:
                 slide_over(face, solid, path_at, tool, height_m)
                 for height_m in HEIGHTS_M
             ]
-    text = make_page(slides)
+    text = make_seams(slides)
     print(text)
     if write:
-        write_page(PAGE, text, __file__)
+        page = PAGE.read_text(encoding="utf-8")
+        write_page(PAGE, replace_part(page, text, "seams"), __file__)
 
 
 if __name__ == "__main__":

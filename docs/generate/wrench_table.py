@@ -62,34 +62,6 @@ SCENARIOS: dict[str, Callable[[str], Iterator[Case]]] = {
     )
 } | {f"face in {n}": partial(cut_face, pieces=n) for n in (1, 4, 50)}
 
-# The tests that hold each equation of the paper against a truth of its own.
-_FORMULA = "characterization/test_wrench_scenarios.py::test_the_formula_holds"
-_PLAIN = "core/law/test_penalty_force.py::test_the_chain_agrees_with_the_equations"
-EQUATIONS = {
-    "1, p̂ᵢ is the mean of the witness points": (
-        "core/pair/test_contact.py::test_columns_name_features_as_kind_and_index",
-        f"{_FORMULA}[octree-groove]",
-    ),
-    "2, contacts nearer than δ are one": (
-        "core/law/test_clustering.py::test_clusters_lie_within_the_stated_band",
-        f"{_FORMULA}[octree-two_posts_of_one_object]",
-    ),
-    "3, n of a cluster": (f"{_FORMULA}[octree-groove]",),
-    "4, p̂ of a cluster": (
-        "core/law/test_clustering.py::test_the_representative_follows_equations_3_to_5",
-        f"{_FORMULA}[octree-groove]",
-    ),
-    "5, d of a cluster": (
-        "core/law/test_clustering.py::test_the_representative_follows_equations_3_to_5",
-        f"{_FORMULA}[octree-groove]",
-    ),
-    "6, elastic force and damping": (_PLAIN, f"{_FORMULA}[shared-materials]"),
-    "7, reaction": (_PLAIN, f"{_FORMULA}[shared-action_and_reaction]"),
-    "8, speed of approach": (_PLAIN, f"{_FORMULA}[shared-damping]"),
-    "9, torque on the tool": (_PLAIN, f"{_FORMULA}[shared-torque_about_a_corner]"),
-    "10, torque on the object": (_PLAIN, f"{_FORMULA}[shared-action_and_reaction]"),
-}
-
 _TEXT = """\
 # Wrenches in closed form
 
@@ -97,8 +69,9 @@ _TEXT = """\
 they do by default, they agree to round-off, and for a smooth sphere to the bound of its
 tessellation.
 
-Contacts whose force and torque are known on paper, answered by the real chain: bodies
-cut into pieces, contact query, clusters, penalty force. This page is written by
+The contacts below have a force and torque that are known on paper. The real chain
+answers them: bodies cut into pieces, contact query, clusters, penalty force. This page
+is written by
 
     python docs/generate/wrench_table.py --write
 
@@ -108,7 +81,7 @@ Tolerance t = {tolerance:g} mm, k = {stiffness:g} N/m, k_v = {damping:g} N·s/m,
 about a point of no symmetry. The error is the larger of |Δf| / |f| and |Δτ| / (|f| a),
 a being the length that the tool has there; of scenarios with several poses, near and
 penetrating, it is the largest, and the last is printed. Tests hold every error at
-{round_off:g}, but that of the smooth sphere at the bound of its tessellation, and do
+{round_off:g}, and that of the smooth sphere at the bound of its tessellation. They do
 not hold the octree to faces that are cut: it weighs the contacts of all pieces alike,
 however little of the tool is over one.
 
@@ -117,9 +90,9 @@ however little of the tool is over one.
 The octree's cells are {delta:g} mm, but 40 mm where the formula speaks of one cluster
 and on faces that are cut.
 
-## The paper's equations
-
-{equations}
+The column *Eq. or section* names what of the paper a scenario follows. More tests hold
+the same equations: `tests/core/pair/test_contact.py`,
+`tests/core/law/test_clustering.py` and `tests/core/law/test_penalty_force.py`.
 """
 
 
@@ -131,12 +104,11 @@ def row(cases: dict[str, Case]) -> list[str]:
         shown.formula,
         shown.equations,
         _text(shown.expected),
-        _text(shown.measured),
         *(f"{cases[m].error:.1e}" if m in cases else "–" for m in METHODS),
     ]
 
 
-TITLES = ("scenario", "closed form", "Eq. or section", "expected", "measured")
+TITLES = ("scenario", "closed form", "Eq. or section", "expected")
 TITLES += tuple(f"error, {method}" for method in METHODS)
 
 
@@ -177,10 +149,6 @@ def main() -> None:
                 r=R,
                 b=1e3 * B_M,
                 rows="\n".join(lines),
-                equations="\n".join(
-                    f"- **{name}**: " + ", ".join(f"`tests/{test}`" for test in tests)
-                    for name, tests in EQUATIONS.items()
-                ),
             ),
             __file__,
         )

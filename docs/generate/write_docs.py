@@ -1,4 +1,4 @@
-"""Writes the figures of a run into docs/verification/benchmarks.md.
+"""Writes the figures of a run into docs/benchmarks.md.
 
 drake-haptics bench --json figures.json
 python docs/generate/write_docs.py figures.json
@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from page_parts import replace_part
@@ -23,8 +24,31 @@ from drake_haptics.evaluation.benchmark.benchmark import (
     missing_lines,
 )
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "verification" / "benchmarks.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 _END = "<!-- end of figures -->\n"
+# Tables whose note has all that the page tells.
+NOTED = ("One pair query from Python",)
+
+
+def show_tables(figures: BenchFigures) -> dict[str, str]:
+    """Returns the tables as sections of the page, by title.
+
+    Rows with equal figures are one row, and a note stands once.
+    """
+    sections: dict[str, str] = {}
+    notes: set[str] = set()
+    for table in make_tables(figures):
+        if table.title in NOTED:
+            sections[table.title] = f"### {table.title}\n\n{table.note}\n"
+            continue
+        joined: dict[tuple[str, ...], list[str]] = {}
+        for name, *cells in table.rows:
+            joined.setdefault(tuple(cells), []).append(name)
+        rows = [("; ".join(names), *cells) for cells, names in joined.items()]
+        note = "As above." if table.note in notes else table.note
+        notes.add(table.note)
+        sections[table.title] = replace(table, rows=rows, note=note).to_markdown()
+    return sections
 
 
 def with_figures(page: str, figures: BenchFigures) -> str:
@@ -34,7 +58,7 @@ def with_figures(page: str, figures: BenchFigures) -> str:
         sections.append(
             "\n".join(f"- {line}" for line in missing_lines(figures)) + "\n"
         )
-    sections += [table.to_markdown() for table in make_tables(figures)]
+    sections += show_tables(figures).values()
     return replace_part(page, "\n".join(sections))
 
 
@@ -43,13 +67,13 @@ def with_tables(page: str, figures: BenchFigures) -> str:
 
     Tables that the page does not have yet come after all others.
     """
-    for table in make_tables(figures):
+    for title, text in show_tables(figures).items():
         section = re.compile(
-            rf"### {re.escape(table.title)}\n.*?(?=\n### |\n{re.escape(_END)})", re.S
+            rf"### {re.escape(title)}\n.*?(?=\n### |\n{re.escape(_END)})", re.S
         )
-        page, replaced = section.subn(lambda _, t=table: t.to_markdown(), page)
+        page, replaced = section.subn(lambda _, t=text: t, page)
         if not replaced:
-            page = page.replace(f"\n{_END}", f"\n{table.to_markdown()}\n{_END}")
+            page = page.replace(f"\n{_END}", f"\n{text}\n{_END}")
     return page
 
 

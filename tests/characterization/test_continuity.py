@@ -7,7 +7,7 @@ import pytest
 from contact_samples import box, hull, pose
 from continuity_rig import CAUSES, JUMP, compare, measure
 from continuity_scenes import SCENES, make_scene
-from continuity_table import PAGE, TITLES, row
+from continuity_table import PAGE, SHOWN, TITLES, make_steps, row
 from continuity_walk import calc_rotation, calc_turn, walk
 from press_rig import LARGEST_FORCE_N
 from scipy.spatial.transform import Rotation
@@ -93,7 +93,7 @@ def test_contacts_that_only_glide_make_no_jump() -> None:
 
 def test_the_page_covers_every_scene_and_method() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    assert "| " + " | ".join(TITLES) + " |" in page
+    assert "| " + " | ".join(SHOWN) + " |" in page
     for key in SCENES:
         for method in METHODS:
             assert f"| {make_scene(key).name} | {method} | " in page
@@ -107,7 +107,7 @@ def test_the_first_steps_walked_again_change_no_more_than_the_page_tells(
     lines = [x.strip("| ").split(" | ") for x in PAGE.read_text("utf-8").splitlines()]
     for method, found in measure(make_scene(key), STEPS).items():
         [told] = [x for x in lines if x[:2] == [make_scene(key).name, method]]
-        by_title = dict(zip(TITLES[6:], told[6:], strict=True))
+        by_title = dict(zip(SHOWN[6:], told[6:], strict=True))
         for largest, text in zip(found.ratio.max(axis=0), told[2:6:2], strict=True):
             # The page has three digits.
             assert 0.0 < largest < 1.01 * float(text), method
@@ -120,3 +120,16 @@ def test_a_row_has_a_text_for_each_title() -> None:
     texts = row("spike", "octree", found)
     assert len(texts) == len(TITLES)
     assert texts[6:-1] == ["0"] * (1 + len(CAUSES)) + ["–"]
+
+
+def test_the_page_sums_up_the_causes_of_all_scenes() -> None:
+    counts = [str(i) for i in range(len(CAUSES))]
+    rows = [
+        [name, method, *["1"] * 5, *counts, "–", "2"]
+        for name in ("one", "other")
+        for method in METHODS
+    ]
+    told = make_steps(rows)
+    assert "| one | octree | 1 | 1 | 1 | 1 | 1 | – | 2 |" in told
+    for i, cause in enumerate(CAUSES):
+        assert f"| {cause} | {2 * i} | {2 * i} |" in told

@@ -14,7 +14,6 @@ from drake_haptics.evaluation.paper.pen_pass import OURS, measure_pen_pass
 from drake_haptics.evaluation.paper.profile import measure_profile, sum_up
 from drake_haptics.evaluation.paper.published import TABLE_1
 from drake_haptics.evaluation.paper.report import make_sections
-from drake_haptics.evaluation.paper.scaling import measure_force_scaling
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
 from drake_haptics.evaluation.paper.table1 import measure_table1
 from drake_haptics.evaluation.paper.tables import (
@@ -53,6 +52,8 @@ def test_the_page_has_the_headings_and_heads_of_now():
         h for h in headings_of(now) if not h.startswith(names)
     ]
     for section in make_sections(make_evaluation()):
+        if section.part == "analysis":
+            continue  # its tables are in its picture
         for table in section.tables:
             head, *body = read_rows(table.title)
             assert tuple(head) == table.header
@@ -83,11 +84,11 @@ def test_every_statement_has_a_verdict_and_is_counted():
 
 
 def test_pictures_are_there_and_small():
-    shown = re.findall(r"!\[.+\]\(\.\./(paper_\w+\.png)\)", FIGURES)
-    there = sorted(path.name for path in PAGE.parents[1].glob("paper_*.png"))
+    shown = re.findall(r"!\[.+\]\((paper_\w+\.png)\)", FIGURES)
+    there = sorted(path.name for path in PAGE.parent.glob("paper_*.png"))
     assert sorted(shown) == there
     for name in shown:
-        assert (PAGE.parents[1] / name).stat().st_size < 120_000
+        assert (PAGE.parent / name).stat().st_size < 120_000
     expected = [
         file_of(p) for s in make_sections(make_evaluation()) for p in s.pictures
     ]
@@ -101,13 +102,6 @@ def test_the_rate_is_that_of_the_table():
     for row, (p99_us, rate_Hz) in zip(rows, said, strict=True):
         assert row[8] == rate_Hz
         assert number(rate_Hz) == pytest.approx(1e6 / number(p99_us), rel=0.02)
-
-
-def test_the_pairs_are_on_the_line_that_is_told():
-    _, *rows = read_rows("Query over penetrating pairs")
-    last = rows[-1]
-    assert number(last[1]) / number(last[0]) == pytest.approx(number(last[2]), rel=0.02)
-    assert [number(row[0]) for row in rows] == [1, 2, 4, 8, 16, 32, 64]
 
 
 def assert_is_on_the_page(table, columns, key=1):
@@ -141,15 +135,6 @@ def test_a_pass_of_the_pen_is_as_smooth_as_the_page_tells():
     rows = [row for row in table.rows if row[1] == OURS]
     _, _, *columns = table.header
     assert_is_on_the_page(replace(table, rows=rows), columns, key=2)
-
-
-def test_brushes_make_as_many_forces_as_the_page_tells():
-    octree, shared = measure_force_scaling(repeats=1)
-    head, *rows = read_rows("Force over contacts")
-    told = [[int(row[i]) for i in (0, 1, 3)] for row in rows]
-    made = zip(octree.contacts, octree.forces, shared.forces, strict=True)
-    assert told == [list(row) for row in made]
-    assert head[1] == "paper's: forces" and head[3] == "shared: forces"
 
 
 def test_times_stay_where_only_the_rest_is_made_again():

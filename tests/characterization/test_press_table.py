@@ -1,4 +1,4 @@
-"""The page on fall-through: what it claims, and that its table is the program's."""
+"""The table of presses: what its page claims, and that it is the program's."""
 
 from __future__ import annotations
 
@@ -6,7 +6,16 @@ import math
 
 import pytest
 from press_cells import COLUMNS, REAL, SHIPPED, TITLES, TOOLS, Cell, row, run_points
-from press_page import COMMAND, PAGE, THIN, read_rows
+from press_page import (
+    COMMAND,
+    HEAD,
+    PAGE,
+    THIN,
+    describe_shares,
+    make_rows,
+    read_gains,
+    read_rows,
+)
 from press_rig import GAINS
 
 from drake_haptics import find_scene, list_scenes, load_scene
@@ -65,24 +74,32 @@ def test_pages_tell_what_gets_through_with_the_gains_of_the_shipped_scenes() -> 
     soft = [r for r in read_rows() if r["gains"] == "soft"]
     thin = [r for r in soft if r["solid"] in THIN]
     page = PAGE.read_text(encoding="utf-8")
-    for rows in (soft, thin):
-        met, through = (sum(int(r[key]) for r in rows) for key in ("met", "through"))
-        assert f"{through} of {met:,} presses and jabs (" in page
+    assert describe_shares(read_rows()) in page
+    met, through = (sum(int(r[key]) for r in thin) for key in ("met", "through"))
+    assert f"{through} of {met:,} presses and jabs (" in page
     # What docs/verification/numerics.md calls one in ten.
     assert 0.08 < through / met < 0.125
 
 
 def test_no_press_on_the_page_was_pulled_in_and_none_with_default_gains_lost() -> None:
+    assert [(r["inward"], r["NaN"]) for r in read_gains()] == [("0", "0")] * len(GAINS)
     lost, met = 0, 0
     for found in read_rows():
         assert int(found["met"]) > 0, found
-        assert (found["inward"], found["NaN"]) == ("0", "0"), found
         if found["gains"] == "default":
             assert (found["lost"], found["through"]) == ("0", "0"), found
         elif found["gains"] == "sinking":
             lost, met = lost + int(found["lost"]), met + int(found["met"])
     # What the page says of tools that sink in.
     assert lost < 1.5e-3 * met
+
+
+def test_a_row_of_the_page_has_a_press_and_a_jab() -> None:
+    head, *rows = make_rows(read_rows())
+    assert head == HEAD
+    page = PAGE.read_text(encoding="utf-8")
+    assert len(rows) > 30
+    assert all(f"| {' | '.join(row)} |" in page for row in rows)
 
 
 def test_a_row_tells_of_all_presses_that_met() -> None:

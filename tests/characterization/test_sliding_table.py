@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 from markdown_page import read_table
+from page_parts import read_part
 from slide_scenes import fifty_pieces, fifty_pieces_path
-from sliding_table import HEAD, HEIGHTS_M, PAGE, make_page, slide_over
+from sliding_table import HEAD, HEIGHTS_M, PAGE, make_seams, slide_over
 
-TEXT = PAGE.read_text(encoding="utf-8")
+TEXT = read_part(PAGE.read_text(encoding="utf-8"), "seams")
 
 
 def test_slides_again_are_those_of_the_page() -> None:
@@ -21,7 +22,7 @@ def test_slides_again_are_those_of_the_page() -> None:
         assert one.lost == 0
         assert one.shared < 1e-5
         assert max(1e6 * one.distance_m, one.normal) < 1e-9
-    _, now = read_table(make_page(slides))
+    _, now = read_table(make_seams(slides))
     head, *rows = read_table(TEXT)
     assert head == HEAD
     [told] = [row for row in rows if row[:2] == ["50 pieces", "edge"]]

@@ -1,4 +1,4 @@
-"""docs/verification/accuracy.md has all scenes, knobs, settings and columns."""
+"""docs/accuracy.md has all scenes, settings and columns of its price lists."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from accuracy_samples import make_study
 from accuracy_table import (
     ADVICE_NAME,
-    ADVICE_PAGE,
     COLUMNS_NAME,
     ERRORS,
     PAGE,
@@ -25,13 +24,12 @@ from command_line import invoke
 from markdown_page import read_table
 from page_parts import find_part, read_part
 
-from drake_haptics.evaluation.accuracy.knobs import list_settings
+from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS, list_settings
 from drake_haptics.evaluation.accuracy.report import COLUMNS
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
 TEXT = PAGE.read_text(encoding="utf-8")
-ADVICE = ADVICE_PAGE.read_text(encoding="utf-8")
 
 
 def rows_of(page: str, name: str) -> list[list[str]]:
@@ -46,8 +44,18 @@ def test_every_setting_has_a_row_with_all_columns(name: str) -> None:
     assert head[2:] == [f"{column.head}, {column.unit}" for column in COLUMNS]
     assert all(len(row) == len(head) for row in rows)
     written = [(knob, label.strip("*† ")) for knob, label, *_ in rows]
-    settings = list_settings(load_scene(find_scene(name)))
-    assert written == [(setting.knob, setting.label) for setting in settings]
+    assert written[0] == (AS_IT_IS.knob, AS_IT_IS.label)
+    expected = [
+        (setting.knob, setting.label)
+        for setting in list_settings(load_scene(find_scene(name)))
+        if setting.knob.startswith(SCENES[name])
+    ]
+    # The scene's own settings are those of its first row.
+    assert set(written[1:]) < set(expected)
+    own = [key for key in expected if key not in written]
+    assert [knob for knob, _ in own] == list(
+        dict.fromkeys(k for k, _ in expected if k != AS_IT_IS.knob)
+    )
 
 
 @pytest.mark.parametrize(
@@ -90,7 +98,7 @@ def test_every_scene_has_its_sentences(name: str) -> None:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_advice_is_that_of_the_price_list(name: str) -> None:
-    lines = read_part(ADVICE, ADVICE_NAME).splitlines()
+    lines = read_part(TEXT, ADVICE_NAME).splitlines()
     [advice] = [x for x in lines if x.startswith(f"- **{name}**: ")]
     assert read_part(TEXT, name).strip().startswith(advice.partition(": ")[2])
 
@@ -102,13 +110,11 @@ def test_the_columns_are_those_of_today() -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_the_picture_of_a_scene_is_there(name: str) -> None:
     picture = get_picture(name)
-    assert picture.name in ADVICE and picture.is_file()
+    assert picture.name in TEXT and picture.is_file()
 
 
 def test_commands_that_are_shown_have_options_that_exist() -> None:
-    asked = re.findall(
-        r"^drake-haptics (accuracy .*?)(?: +#.*)?$", ADVICE, re.MULTILINE
-    )
+    asked = re.findall(r"^drake-haptics (accuracy .*?)(?: +#.*)?$", TEXT, re.MULTILINE)
     assert len(asked) == 4
     known = invoke("accuracy", "--help").stdout
     for line in asked:
