@@ -76,8 +76,9 @@ def make_prices(study: AccuracyStudy, keys: str = "") -> str:
 
     Args:
         study: Figures of the scene.
-        keys: Beginning of the keys that have rows. The scene as it is has the first
-            one, and its own settings no others.
+        keys: Beginning of the keys that have rows; "" for all keys, and lists of knees
+            and other libraries. The scene as it is has the first row, and its own
+            settings no others.
     """
     columns = get_columns(study)
     heads = [f"{column.head}, {column.unit}" for column in columns]
@@ -89,10 +90,8 @@ def make_prices(study: AccuracyStudy, keys: str = "") -> str:
     ]
     parts = [
         " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
-        to_markdown([["knob", "setting", *heads], *rows]),
-        _make_list("Knee: ", describe_knees(study)),
-        _make_list("Beside it: ", describe_peers(study)),
-        _make_list("Not measured: ", describe_missing(study)),
+        to_markdown([["key", "setting", *heads], *rows]),
+        "" if keys else _make_lists(study),
         describe_machine(study) + "\n",
     ]
     return "\n".join(part for part in parts if part)
@@ -165,6 +164,20 @@ def _make_label(row: Row) -> str:
         f"{row.setting.label} †"
         if find_model_change(row.setting)
         else (row.setting.label)
+    )
+
+
+def _make_lists(study: AccuracyStudy) -> str:
+    """Returns knees, other libraries, and what was not measured."""
+    lists = {
+        "Knee: ": describe_knees(study),
+        "Beside it: ": describe_peers(study),
+        "Not measured: ": describe_missing(study),
+    }
+    return "\n".join(
+        _make_list(beginning, sentences)
+        for beginning, sentences in lists.items()
+        if sentences
     )
 
 

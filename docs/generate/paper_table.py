@@ -35,8 +35,13 @@ from drake_haptics.report.page import draw_png
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "paper.md"
 _DPI, _COLORS = 80, 128
-# A section whose tables are all in its picture.
-_DRAWN = ("analysis",)
+# Tables whose figures are in pictures and sentences.
+DRAWN = (
+    "Times of a tick",
+    "One depth",
+    "Query over penetrating pairs",
+    "Force over contacts",
+)
 # Heads of columns, and words of sentences, in which times are.
 _TIMED_COLUMN = re.compile(r"µs|seconds|Hz|under 1 ms|^(query|force|whole tick)$")
 _TIMED_SENTENCE = re.compile(r"µs|time (?:that )?grows|takes .* % more")
@@ -56,8 +61,7 @@ def show_section(section: Section) -> str:
         lines = (f"- **{s.verdict}**: {s.text}\n" for s in block.statements)
         parts.append("".join(lines))
         parts += [f"![{p.alt}]({file_of(p)})\n" for p in block.pictures]
-    if section.part not in _DRAWN:
-        parts += [table.to_markdown() for table in section.tables]
+    parts += [x.to_markdown() for x in section.tables if x.title not in DRAWN]
     return "\n".join(parts)
 
 

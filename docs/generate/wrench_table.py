@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from page_parts import make_parser
 from page_stamp import write_page
@@ -75,12 +73,12 @@ is written by
 
     python docs/generate/wrench_table.py --write
 
-Tolerance t = {tolerance:g} mm, k = {stiffness:g} N/m, k_v = {damping:g} N·s/m, f in N,
-τ in N·mm; friction has μ = {mu:g}, r = {r:g} (static over sliding) and b = {b:g} mm
+Tolerance t = {tolerance:g} mm, k = {stiffness:g} N/m, k_v = {damping:g} N·s/m;
+friction has μ = {mu:g}, r = {r:g} (static over sliding) and b = {b:g} mm
 (how far a contact gives way). Every scene stands askew in the world, and torques are
 about a point of no symmetry. The error is the larger of |Δf| / |f| and |Δτ| / (|f| a),
 a being the length that the tool has there; of scenarios with several poses, near and
-penetrating, it is the largest, and the last is printed. Tests hold every error at
+penetrating, it is the largest. Tests hold every error at
 {round_off:g}, and that of the smooth sphere at the bound of its tessellation. They do
 not hold the octree to faces that are cut: it weighs the contacts of all pieces alike,
 however little of the tool is over one.
@@ -103,21 +101,12 @@ def row(cases: dict[str, Case]) -> list[str]:
         shown.scenario,
         shown.formula,
         shown.equations,
-        _text(shown.expected),
         *(f"{cases[m].error:.1e}" if m in cases else "–" for m in METHODS),
     ]
 
 
-TITLES = ("scenario", "closed form", "Eq. or section", "expected")
+TITLES = ("scenario", "closed form", "Eq. or section")
 TITLES += tuple(f"error, {method}" for method in METHODS)
-
-
-def _text(wrench: np.ndarray) -> str:
-    """Returns the last of (..., 6) as text, in N and N·mm."""
-    last = np.reshape(wrench, (-1, 6))[-1]
-    last = np.where(np.abs(last) < 1e-12, 0.0, last)
-    f, tau = (", ".join(f"{x:.5g}" for x in v) for v in (last[3:], 1e3 * last[:3]))
-    return f"f ({f}), τ ({tau})"
 
 
 def rows() -> Iterator[list[str]]:

@@ -40,7 +40,7 @@ def rows_of(page: str, name: str) -> list[list[str]]:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_setting_has_a_row_with_all_columns(name: str) -> None:
     head, *rows = rows_of(TEXT, name)
-    assert head[:2] == ["knob", "setting"]
+    assert head[:2] == ["key", "setting"]
     assert head[2:] == [f"{column.head}, {column.unit}" for column in COLUMNS]
     assert all(len(row) == len(head) for row in rows)
     written = [(knob, label.strip("*† ")) for knob, label, *_ in rows]
