@@ -28,7 +28,7 @@ _COMMANDS = {
         ),
         "log": (
             "drake_haptics.cli.log",
-            "Look into, replay, compare and export recorded runs.",
+            "Inspect, replay, compare and export recorded runs.",
         ),
     },
     "Included": {
@@ -39,7 +39,10 @@ _COMMANDS = {
         ),
     },
     "Your meshes": {
-        "check": ("drake_haptics.cli.meshes", "Report what a mesh file is and lacks."),
+        "check": (
+            "drake_haptics.cli.meshes",
+            "Report the contents and defects of a mesh file.",
+        ),
         "decompose": (
             "drake_haptics.cli.meshes",
             "Cut the surface of a mesh into convex pieces.",
@@ -48,11 +51,11 @@ _COMMANDS = {
     "How stiff, how exact, how fast": {
         "stability": (
             "drake_haptics.cli.stability",
-            "Say how stable a scene is and how stiff its coupling could be.",
+            "Compute how stable a scene is and how stiff its coupling may be.",
         ),
         "accuracy": (
             "drake_haptics.cli.accuracy",
-            "Say what accuracy costs in time, and hold a time budget.",
+            "Measure what accuracy costs in time; keep a time budget.",
         ),
         "bench": (
             "drake_haptics.cli.bench",
@@ -60,7 +63,7 @@ _COMMANDS = {
         ),
         "paper": (
             "drake_haptics.cli.paper",
-            "Make the evaluation of the paper again, and compare.",
+            "Reproduce the evaluation of the paper, and compare.",
         ),
     },
     "This program": {
@@ -75,10 +78,11 @@ _LESSON = Lesson(
     examples=[
         ("A spoon scrapes a cup, in the browser", "drake-haptics run cup_spoon"),
         ("Move the spoon yourself", "drake-haptics run cup_spoon --device mouse:"),
-        ("Is my mesh fit for it", "drake-haptics check my_mesh.stl --unit mm"),
+        ("Check your own mesh", "drake-haptics check my_mesh.stl --unit mm"),
     ],
-    exits="0: done. 1: what was given cannot be used. 2: wrong call. 3: done, and the"
-    " answer is no. 130: ended by Ctrl-C. docs/command-line.md has the table.",
+    exits="0: success. 1: an input cannot be used. 2: wrong command line. 3: the"
+    " command ran, and the answer is no. 130: ended by Ctrl-C. docs/command-line.md has"
+    " the table.",
     further="`drake-haptics COMMAND --help` explains each command, with examples.",
 )
 
@@ -104,7 +108,7 @@ class _Program(LazyGroup):
     is_flag=True,
     envvar="DRAKE_HAPTICS_DEBUG",
     show_envvar=True,
-    help="Show the traceback of whatever ends a command.",
+    help="Show a traceback when a command fails.",
 )
 @click.version_option(
     None, "-V", "--version", package_name="drake_haptics", prog_name="drake-haptics",

@@ -137,7 +137,7 @@ _FILE: dict[str, Any] = {
 @click.option(
     "--quick",
     is_flag=True,
-    help="Measure less: one setting of each knob, once, and no other library.",
+    help="Measure less: one setting of each key, once, and no other library.",
 )
 @click.option(
     "--only",
@@ -158,7 +158,7 @@ _FILE: dict[str, Any] = {
     help="The page; its picture is written beside it.  [default: SCENE-accuracy.html]",
 )
 @set_option
-@click.option("--store", **_FILE, help="Keep results here, and go on from them.")
+@click.option("--store", **_FILE, help="Keep results here, and continue from them.")
 @click.option(
     "--budget-us",
     type=FiniteRange(0, min_open=True),
@@ -181,7 +181,7 @@ def accuracy(
     write: Path | None,
     json_file: str | None,
 ) -> None:
-    """Say what each step of accuracy costs in time, on this machine.
+    """Measure what each step of accuracy costs in time, on this machine.
 
     SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene file;
     cup_spoon if not given. The hand moves along its path once. Every setting of every

@@ -26,7 +26,7 @@ from drake_haptics.evaluation.benchmark.outside_library import load_library
 
 @click.command(cls=CommandWithExamples, lesson=lessons.BENCH)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
-@click.option("--quick", is_flag=True, help="Measure less: some 40 seconds.")
+@click.option("--quick", is_flag=True, help="Measure less: about 40 seconds.")
 @meshes_option("Take the scenes' meshes from here where it has them")
 @click.option(
     "--library",

@@ -110,7 +110,7 @@ _HOW = {
 @click.command(cls=CommandWithExamples, lesson=lessons.COMPLETION)
 @click.argument("shell", type=click.Choice(list(_HOW)), required=False)
 def completion(shell: str | None) -> None:
-    """Print what lets the Tab key complete commands, options and scenes.
+    """Print a script that lets the Tab key complete commands, options and scenes.
 
     SHELL is that of $SHELL if not given. The first line that is printed says where it
     belongs.

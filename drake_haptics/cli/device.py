@@ -56,7 +56,7 @@ from drake_haptics.loop.drivers import make_simulated_driver
     metavar="MS",
     default=100.0,
     show_default=True,
-    help="A command is shown for so long at most, then the force goes to zero and the"
+    help="Longest life of a command; after it the force goes to zero and the"
     " device is at fault.",
 )
 @click.option(

@@ -111,8 +111,8 @@ def _describe(error: BaseException) -> click.ClickException:
         return click.ClickException(_describe_refusal(error))
     if isinstance(error, MemoryError):
         return click.ClickException(
-            "the computer's memory does not suffice; a mesh can be reduced first, with"
-            " --max-triangles or a scene's max_triangles"
+            "not enough memory; reduce the mesh first, with --max-triangles or a"
+            " scene's max_triangles"
         )
     if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name):
         return click.ClickException(
@@ -144,9 +144,9 @@ def _describe_defect(error: BaseException) -> str:
     ]
     what = " ".join(f"{type(error).__name__}: {error}".split())
     return (
-        f"a defect of drake-haptics, not of what you gave: {what}"
-        f"{places[-1] if places else ''}. Please report it, with the command and what"
-        " `drake-haptics --debug` before its name prints"
+        f"a defect of drake-haptics, not of your input: {what}"
+        f"{places[-1] if places else ''}. Please report it, with the command and the"
+        " output of the same command after `drake-haptics --debug`"
     )
 
 

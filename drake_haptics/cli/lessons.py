@@ -126,7 +126,7 @@ class LazyGroup(click.Group):
         self.lesson.format(formatter)
 
 
-_UNUSABLE = "1: something given cannot be used; the message says why"
+_UNUSABLE = "1: an input cannot be used; the message says why"
 
 RUN = Lesson(
     examples=[
@@ -137,11 +137,11 @@ RUN = Lesson(
             "drake-haptics run --tool pen.stl --environment mug.stl --unit mm",
         ),
         (
-            "With another value, and kept as a scene file at the end",
+            "Another value, and the scene written to a file at the end",
             "drake-haptics run can_box --set hand.grip=firm --write-scene my.yaml",
         ),
         (
-            "Five seconds into a page to keep, with no browser",
+            "Five seconds, recorded as a web page, without a browser",
             "drake-haptics run cup_spoon --headless --duration 5 --record cup.html",
         ),
     ],
@@ -149,7 +149,7 @@ RUN = Lesson(
     " unstable.",
     further="On a computer without a browser: `ssh -N -L 7100:localhost:7100 -L"
     " 7000:localhost:7000 HOST` brings the page to yours, or use --record."
-    " `stability SCENE` says how stiff a scene may be.",
+    " `stability SCENE` computes how stiff a scene may be.",
 )
 
 DEVICE = Lesson(
@@ -161,8 +161,8 @@ DEVICE = Lesson(
         ),
     ],
     exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}.",
-    further="End either of the two, or pause `run` with Ctrl-Z, and see what the other"
-    " does. docs/connect-a-device.md shows how to write a driver for your own arm.",
+    further="End either of the two, or pause `run` with Ctrl-Z, and watch the other."
+    " docs/connect-a-device.md shows how to write a driver for your own arm.",
 )
 
 SCENES = Lesson(
@@ -185,30 +185,30 @@ CHECK = Lesson(
         ("A mesh in meters", "drake-haptics check cup.obj"),
         ("One in millimeters", "drake-haptics check cup.obj --unit mm"),
         (
-            "Only whether it is without defect, in a script",
+            "In a script: fail if there is a defect",
             "drake-haptics check cup.obj --strict --json cup.json",
         ),
     ],
-    exits=f"0: it can be used. {_UNUSABLE}; or, with --strict, it has a defect.",
+    exits=f"0: the mesh can be used. {_UNUSABLE}; or, with --strict, the mesh has a"
+    " defect.",
     further="`decompose MESH --show` shows its convex pieces in the browser,"
     " `run --tool MESH --environment MESH` touches it.",
 )
 
 DECOMPOSE = Lesson(
     examples=[
-        ("Exactly, and kept for the next time", "drake-haptics decompose cup.obj"),
+        ("Exactly; the result is kept on disk", "drake-haptics decompose cup.obj"),
         (
             "Fewer pieces, within a tenth of a millimeter",
             "drake-haptics decompose cup.obj --method merged --error 1e-4",
         ),
         (
-            "Pieces in colors, as a page to keep",
+            "Pieces in colors, as a web page",
             "drake-haptics decompose cup.obj --html pieces.html",
         ),
     ],
-    exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; nothing is left half written, and the"
-    " next call starts from the beginning.",
-    further="`run` cuts the meshes of a scene itself, and finds what was cut before."
+    exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; no file is left half written.",
+    further="`run` cuts the meshes of a scene itself, and reuses stored results."
     " docs/decomposition.md compares the methods.",
 )
 
@@ -220,8 +220,8 @@ STABILITY = Lesson(
             "drake-haptics stability cup_spoon --map 0",
         ),
     ],
-    exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; with --store the map goes"
-    " on from there.",
+    exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; with --store the same"
+    " command continues the map.",
     further="--set coupling.stiffness_N_per_m=1200 tries another stiffness."
     " docs/stability.md explains the page.",
 )
@@ -230,7 +230,7 @@ ACCURACY = Lesson(
     examples=[
         ("The price list, some seconds", "drake-haptics accuracy sphere_pen --quick"),
         (
-            "A scene that keeps 400 µs",
+            "A scene whose ticks take at most 400 µs",
             "drake-haptics accuracy cup_spoon --budget-us 400 --write faster.yaml",
         ),
         (
@@ -238,9 +238,9 @@ ACCURACY = Lesson(
             "drake-haptics accuracy sphere_pen --quick --only contact.tolerance_m=1e-3",
         ),
     ],
-    exits=f"0: done. {_UNUSABLE}. 3: no setting holds the budget. 130: Ctrl-C; with"
-    " --store it goes on from there.",
-    further="`drake-haptics run faster.yaml` runs what --budget-us has written."
+    exits=f"0: done. {_UNUSABLE}. 3: no setting keeps the budget. 130: Ctrl-C; with"
+    " --store the same command continues.",
+    further="`drake-haptics run faster.yaml` runs the scene that --budget-us wrote."
     " docs/accuracy.md explains the list.",
 )
 
@@ -251,7 +251,7 @@ BENCH = Lesson(
     ],
     exits=f"0: done. {_UNUSABLE}.",
     further='Other libraries come with pip install "drake_haptics[peers]".'
-    " docs/benchmarks.md says what is measured and how.",
+    " docs/benchmarks.md explains the measurements.",
 )
 
 PAPER = Lesson(
@@ -260,20 +260,20 @@ PAPER = Lesson(
         ("All of it, some minutes", "drake-haptics paper --out paper.html"),
     ],
     exits=f"0: done, whatever agrees or differs. {_UNUSABLE}.",
-    further="docs/paper.md has the figures and what they mean.",
+    further="docs/paper.md explains the figures.",
 )
 
 LOG_INFO = Lesson(
-    examples=[("What is in it", "drake-haptics log info run.tick")],
+    examples=[("The contents of a log", "drake-haptics log info run.tick")],
     exits=f"0: done, also of a log with gaps. {_UNUSABLE}.",
-    further="`drake-haptics log replay FILE` moves the handle like that again.",
+    further="`drake-haptics log replay FILE` computes the recorded motion again.",
 )
 
 LOG_REPLAY = Lesson(
     examples=[
-        ("Is it the same again", "drake-haptics log replay run.tick"),
+        ("Check that a replay gives the same", "drake-haptics log replay run.tick"),
         (
-            "The same motion with another kind of depth, kept",
+            "The same motion with another kind of depth, recorded",
             "drake-haptics log replay run.tick --log new.tick"
             " --set contact.depth=global",
         ),
@@ -285,7 +285,7 @@ LOG_REPLAY = Lesson(
 
 LOG_DIFF = Lesson(
     examples=[
-        ("Where do they part", "drake-haptics log diff run.tick new.tick"),
+        ("Where two logs differ", "drake-haptics log diff run.tick new.tick"),
         (
             "As a picture",
             "drake-haptics log diff run.tick new.tick --plot diff.png",

@@ -36,7 +36,7 @@ _COMMANDS = {
     "Commands": {
         "info": (
             __name__,
-            "Say what a log holds and what it lacks.",
+            "List the contents and the gaps of a log.",
         ),
         "replay": (
             __name__,
@@ -69,7 +69,7 @@ _MOST_SETTINGS = 6
 
 @click.group(cls=LazyGroup, commands_by_heading=_COMMANDS, lesson=_LESSON)
 def log() -> None:
-    """Look into, replay, compare and export what `run --log FILE` has recorded."""
+    """Inspect, replay, compare and export logs that `run --log FILE` recorded."""
 
 
 def warn_of_gaps(file: Path, sentences: Iterable[str]) -> None:
@@ -127,7 +127,7 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
 @click.argument("file", type=click.Path(path_type=Path))
 @json_option
 def info(file: Path, json_file: str | None) -> None:
-    """Say what a log holds and what it lacks.
+    """List the contents and the gaps of a log.
 
     FILE is a log of `run --log FILE`. It may be damaged, cut off, or still be written.
     """
@@ -242,7 +242,7 @@ def replay(
 @click.argument("b", type=click.Path(path_type=Path))
 @file_option(
     "--plot",
-    help="Draw forces, depths and where the tools part, as PNG, SVG or PDF.",
+    help="Draw forces, depths and the distance of the tools, as PNG, SVG or PDF.",
 )
 @json_option
 @click.pass_context

@@ -47,7 +47,7 @@ def check(
     strict: bool,
     json_file: str | None,
 ) -> None:
-    """Report what a mesh file is, what is wrong with it and what is done about it."""
+    """Report the contents and the defects of a mesh file, and how each is handled."""
     report = read_mesh(mesh, unit, scale, max_triangles).report
     if json_file is not None:
         write_json(report.to_dict(), json_file)
@@ -74,7 +74,7 @@ def check(
     "error_m",
     type=FiniteRange(0),
     metavar="METERS",
-    help="How far merged pieces may depart from the mesh.",
+    help="Largest distance of merged pieces from the mesh.",
 )
 @click.option(
     "--out",
@@ -83,9 +83,7 @@ def check(
     callback=require_folder,
     help="Write mesh and pieces to an .npz file.",
 )
-@click.option(
-    "--no-cache", is_flag=True, help="Neither use nor keep results on the disk."
-)
+@click.option("--no-cache", is_flag=True, help="Neither use nor keep results on disk.")
 @click.option(
     "--show", is_flag=True, help="Show the pieces in the browser until Ctrl-C."
 )

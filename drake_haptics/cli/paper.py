@@ -48,7 +48,7 @@ _ANY_WIDTH = 1000
 
 @click.command(cls=CommandWithExamples, lesson=lessons.PAPER)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
-@click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
+@click.option("--quick", is_flag=True, help="Measure less: about 20 seconds.")
 @meshes_option("Measure these meshes too, as many as there are")
 @file_option(
     "--out",
@@ -64,7 +64,7 @@ def paper(
     out: Path,
     json_file: str | None,
 ) -> None:
-    """Make the evaluation of the paper again, and say where we agree and differ.
+    """Reproduce the evaluation of the paper, and compare each statement.
 
     PARTS are table1 (convex pieces), figure11 (time of each tick), figure12 (a pen
     passes over a sphere) and analysis (section 6.3); all if none is named. Some two

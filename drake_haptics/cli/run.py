@@ -55,7 +55,7 @@ _EXPLAINED_S = 2.0
     "--device",
     metavar="ADDRESS",
     shell_complete=complete_address,
-    help="Hold a device instead of the simulated one: udp://HOST:PORT of a driver (try"
+    help="Use a device instead of the simulated one: udp://HOST:PORT of a driver (try"
     " the command `device`), haply://HOST, lcm:, replay:FILE of --log, or without one"
     " mouse: and meshcat: (sliders below Open Controls on the page, gamepad).",
 )
@@ -83,7 +83,7 @@ _EXPLAINED_S = 2.0
 )
 @file_option(
     "--log",
-    help="Note every tick in a file, for the command `log`.",
+    help="Record every tick in a file, for the command `log`.",
 )
 @file_option(
     "--write-scene",

@@ -59,7 +59,7 @@ def describe_skin(speed_m_per_s: float) -> str:
     """Says above which speed a step skips the skin of contact."""
     return (
         f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"
-        " it is met as deep as the step has taken it."
+        " contact begins as deep as that step has taken it."
     )
 
 

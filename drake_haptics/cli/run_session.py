@@ -204,7 +204,7 @@ def run_session(
             try:
                 backend = stack.enter_context(open_device(device, scene, meshcat))
             except NoPageError as missing:
-                raise DeviceError(f"{missing}: leave --headless out") from missing
+                raise DeviceError(f"{missing}: omit --headless") from missing
             if backend.shows_force:
                 backend = take_device(backend, scene)
         with timer or nullcontext(), naming(str(device), DeviceError):

@@ -60,7 +60,7 @@ from drake_haptics.simulation.run import RunError
 )
 @file_option(
     "--store",
-    help="Keep the map's results here, and go on from them.",
+    help="Keep the map's results here, and continue from them.",
 )
 @set_option
 @json_option
@@ -73,7 +73,7 @@ def stability(
     settings: tuple[str, ...],
     json_file: str | None,
 ) -> None:
-    """Say how stable a scene is, and how stiff its coupling could be.
+    """Compute how stable a scene is, and how stiff its coupling may be.
 
     SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene
     file. The hand stops on its path, the tool rests in contact, and the loop of

@@ -236,7 +236,7 @@ def make_summary(figures: dict[str, Any]) -> Table:
         f" median {clusters['median']:.0f}, at most {clusters['max']}",
     )
     table.add_row(
-        "largest asked for" if figures.get("device") else "largest",
+        "largest commanded" if figures.get("device") else "largest",
         f"force {figures['max_force_N']:.2f} N,"
         f" torque {1e3 * figures['max_torque_Nm']:.0f} mN·m,"
         f" penetration {1e3 * figures['max_penetration_m']:.3f} mm"
@@ -250,7 +250,9 @@ def make_summary(figures: dict[str, Any]) -> Table:
                 for name, ticks in figures["shed_ticks"].items()
             ),
         )
-    table.add_row("device limit", f"{count(figures['limit_hits'], 'tick')} at it")
+    table.add_row(
+        "device limit", f"{count(figures['limit_hits'], 'tick')} at the limit"
+    )
     if device := figures.get("device"):
         table.add_row("device", describe_device(device))
     if figures["energy_J"]:

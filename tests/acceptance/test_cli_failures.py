@@ -159,7 +159,7 @@ def test_a_scene_that_is_not_there(scene, words):
         ("udp://127.0.0.1:99999", ["Port out of range"]),
         ("haply://127.0.0.1:1", ["Start Haply's Inverse Service"]),
         ("replay:no.tick", ["no.tick"]),
-        ("mouse:", ["leave --headless out"]),
+        ("mouse:", ["omit --headless"]),
     ],
 )
 def test_a_device_of_nobody(address, words):

@@ -33,7 +33,7 @@ def log(tmp_path_factory):
 
 
 def test_the_commands_are_listed():
-    assert "Look into, replay, compare" in invoke("--help").output
+    assert "Inspect, replay, compare" in invoke("--help").output
     output = invoke("log", "--help").output
     for name in ("info", "replay", "diff", "csv"):
         assert f"  {name} " in output
