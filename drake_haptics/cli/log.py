@@ -149,7 +149,9 @@ def _print_summary(file: Path, summary: LogSummary) -> None:
     table.add_row("recorded by", f"drake_haptics {header.program_version}")
     table.add_row("device", "simulated" if summary.is_simulated else "not simulated")
     table.add_row("ticks", f"{ticks}, {duration_s:.3f} s at {1 / header.period_s:g} Hz")
-    table.add_row("longest tick", f"{1e3 * summary.longest_wait_s:.2f} ms by the clock")
+    table.add_row(
+        "longest tick", f"{1e3 * summary.longest_wait_s:.2f} ms of elapsed time"
+    )
     size = f"{summary.bytes / 1e6:.2f} MB"
     if ticks:
         size += f", {60e-6 * summary.bytes / duration_s:.1f} MB per minute"

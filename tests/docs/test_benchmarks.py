@@ -8,7 +8,7 @@ from dataclasses import replace
 import write_docs
 from bench_samples import EVERYTHING
 from page_parts import read_part
-from write_docs import NOTED, PAGE, show_tables, with_figures
+from write_docs import LEFT_OUT, NOTED, PAGE, show_tables, with_figures
 
 from drake_haptics.evaluation.benchmark.benchmark import Effort, make_tables
 from drake_haptics.evaluation.benchmark.libraries.with_drake_haptics import LIBRARIES
@@ -36,6 +36,9 @@ def rows_below(title: str) -> list[list[str]]:
 
 def test_every_table_is_there_with_its_headings() -> None:
     for table in make_tables(EVERYTHING):
+        if any(scene in table.title for scene in LEFT_OUT):
+            assert table.title not in _SECTION
+            continue
         assert table.note.split(".")[0] in _SECTION
         if table.title in NOTED:
             continue

@@ -51,8 +51,8 @@ class Column:
 
 
 COLUMNS = (
-    Column("tick", "µs", "The whole tick through the Simulator, paced by the clock as"
-           " for a device: median / 99th percentile.", "median / p99"),
+    Column("tick", "µs", "The whole tick through the Simulator in real time, as with"
+           " a device: median / 99th percentile.", "median / p99"),
     Column("core", "µs", "The part of the tick inside the compiled core: contact query,"
            " clusters and wrench; median."),
     Column("force", "N", "Difference of the force on the tool from the reference's at"
