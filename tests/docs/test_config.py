@@ -65,7 +65,7 @@ def test_the_small_example_can_be_built(tmp_path):
 
 def test_the_words_are_those_that_are_known():
     page = (DOCS / "reference" / "scene-file.md").read_text()
-    (table,) = re.findall(r"\| key \| word .*?\n\n", page, re.DOTALL)
+    (table,) = re.findall(r"\| key \| value .*?\n\n", page, re.DOTALL)
     cells = [line.split("|")[2] for line in table.splitlines() if line]
     words = re.findall(r"`(\w+)`", " ".join(cells))
     rules = find_rules(FILES["scene"].load, DOCS / FILES["scene"].example)

@@ -35,7 +35,7 @@ def read_fields(first: str, end: str) -> list[Field]:
 
 HEADER = read_fields("Both begin with the same header", "A state, from the driver")
 STATE = HEADER + read_fields("A state, from the driver", "A command, from the host")
-COMMAND = HEADER + read_fields("A command, from the host", "## Who says what")
+COMMAND = HEADER + read_fields("A command, from the host", "## The exchange")
 
 
 def read_packet(fields: list[Field], packet: bytes) -> dict[str, Any]:
