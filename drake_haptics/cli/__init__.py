@@ -80,9 +80,8 @@ _LESSON = Lesson(
         ("Move the spoon yourself", "drake-haptics run cup_spoon --device mouse:"),
         ("Check your own mesh", "drake-haptics check my_mesh.stl --unit mm"),
     ],
-    exits="0: success. 1: an input cannot be used. 2: wrong command line. 3: the"
-    " command ran, and the answer is no. 130: ended by Ctrl-C. docs/command-line.md has"
-    " the table.",
+    exits="0: success. 1: an input cannot be used. 2: wrong command line. 3: done, and"
+    " the answer is no. 130: ended by Ctrl-C. docs/command-line.md has the table.",
     further="`drake-haptics COMMAND --help` explains each command, with examples.",
 )
 

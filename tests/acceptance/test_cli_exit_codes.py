@@ -40,7 +40,7 @@ ENDS = [
     (OSError(errno.ENOSPC, "No space left on device"), 1, "free some space"),
     (MemoryError(), 1, "--max-triangles"),
     (ModuleNotFoundError("No module named 'x'", name="trimesh"), 1, "pip install trim"),
-    (ZeroDivisionError("float division"), 70, "a defect of drake-haptics, not of what"),
+    (ZeroDivisionError("float division"), 70, "a defect of drake-haptics, not of your"),
     (ModuleNotFoundError("gone", name="drake_haptics.gone"), 70, "a defect of"),
     (KeyboardInterrupt(), 130, "Stopped."),
     (KeyboardInterrupt("Stopped. 3 of 9 are kept"), 130, "Stopped. 3 of 9 are kept"),

@@ -130,7 +130,5 @@ def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
     assert "**as it is**" in prices and "0.5 mm †" in prices and "| CoACD |" in prices
     for page in (TEXT, renewed):
         assert page.count(FIRST) > 1
-    before, after = (
-        page[: find_part(page, FIRST).start] for page in (TEXT, renewed)
-    )
+    before, after = (page[: find_part(page, FIRST).start] for page in (TEXT, renewed))
     assert before == after
