@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cstdio>
+#include <thread>
 
 /// Tests are plain programs: `return drake_haptics::FailedChecks() > 0;`.
 namespace drake_haptics {
@@ -32,3 +34,22 @@ inline int& FailedChecks() {
     }                                      \
     CHECK(thrown && #statement);           \
   } while (false)
+
+namespace drake_haptics {
+
+/// Waits until another thread has made a condition true, and counts a failure
+/// after a minute, so that a test never hangs. It sleeps between two looks: a
+/// busy wait would take the processor from the thread that it waits for.
+template <typename Condition>
+void WaitUntil(Condition condition) {
+  const auto begin = std::chrono::steady_clock::now();
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() - begin > std::chrono::minutes(1)) {
+      CHECK(!"the condition has not become true within a minute");
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+}
+
+}  // namespace drake_haptics

@@ -27,11 +27,6 @@ ServoTool MakeTool(double period) {
           {Above(kRest + 5e-3), Vec6::Zero()}};
 }
 
-template <typename Condition>
-void Wait(Condition condition) {
-  while (!condition()) std::this_thread::yield();
-}
-
 // The program only says that it goes on. The tool comes to rest on the plate
 // under a handle that is pressed beyond, and the device is pushed.
 void TheToolRestsOnThePlate() {
@@ -43,7 +38,7 @@ void TheToolRestsOnThePlate() {
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   CHECK(contact.status().num_solved == 0);  // nobody has said so
   CHECK(!servo.status().is_active);
-  Wait([&] {
+  WaitUntil([&] {
     contact.Renew(kGains, Vec6::Zero());
     return contact.status().num_solved > 300 && driver.num_pushes() > 50;
   });
@@ -64,12 +59,12 @@ void AStalledLoopIsReleased() {
   options.times.hold = 0.3;
   UdpServo servo("127.0.0.1", driver.port(), options);
   ContactServo contact(&servo, MakeTool(5e-4));
-  Wait([&] {
+  WaitUntil([&] {
     contact.Renew(kGains, Vec6::Zero());
     return servo.status().scale > 0.5;
   });
   const std::int64_t before = contact.status().num_solved;
-  Wait([&] { return servo.status().scale == 0; });
+  WaitUntil([&] { return servo.status().scale == 0; });
   CHECK(contact.status().num_solved > before);
 }
 
@@ -80,13 +75,13 @@ void NoMoreIsShownThanTheShare() {
   UdpServo servo("127.0.0.1", driver.port(), Patient());
   ContactServo contact(&servo, MakeTool(5e-4));
   contact.SetShare(0);
-  Wait([&] {
+  WaitUntil([&] {
     contact.Renew(kGains, Vec6::Zero());
     return contact.status().num_solved > 100 && servo.status().scale == 1;
   });
   CHECK(driver.num_pushes() == 0);
   contact.SetShare(0.5);
-  Wait([&] {
+  WaitUntil([&] {
     contact.Renew(kGains, Vec6::Zero());
     return driver.num_pushes() > 50;
   });
@@ -97,7 +92,7 @@ void OverrunPeriodsAreCounted() {
   Driver driver;
   UdpServo servo("127.0.0.1", driver.port(), Patient());
   ContactServo contact(&servo, MakeTool(1e-8));
-  Wait([&] {
+  WaitUntil([&] {
     contact.Renew(kGains, Vec6::Zero());
     return contact.status().num_late > 100 && driver.num_pushes() > 50;
   });
