@@ -81,7 +81,7 @@ class NearPieces {
     int node = 0;      // node of the front
     double inner = 0;  // A's radius less the piece's, m
     double mark = 0;   // odometer plus distance at the last query, m
-    PairState state;
+    PairState state{};
 
     double Reading(const Tick& tick) const {
       return tick.odometer - inner * tick.turned;
