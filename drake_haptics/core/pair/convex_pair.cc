@@ -1,8 +1,10 @@
 #include "pair/convex_pair.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
@@ -38,21 +40,77 @@ class Query {
   }
 
  private:
+  // Under coherent motion the last features are mostly still the answer, and
+  // one comparison proves it.
   PairContact Answer() {
-    last_simplex_ = state_.simplex;
-    if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth());
+    const Revisit last = RevisitLast();
+    if (last.status == RevisitStatus::kMinimum && IsApart(last.facet.h)) {
+      state_.vertex_pair = last.vertex_pair;
+      state_.is_apart = true;
+      state_.simplex.size = 0;
+      return ContactAtFacet(pair_, last.facet, ContactStatus::kNear);
+    }
+    if (MayOverlap(last) && IsUnderFacet(LocalDepth(last))) {
+      return AtFacet(FindDepth(last));
+    }
+    if (state_.simplex.size == 0 && !state_.feature_A.is_none()) StartAtLast();
+    if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth(last));
     const Separation separation =
         ComputeSeparation(pair_, state_.simplex, kInfinity);
     state_.simplex = separation.simplex;
     const bool is_apart = separation.status == SeparationStatus::kApart;
     return is_apart && !AreBothWanted(pair_, separation)
                ? Apart(separation)
-               : Touching(separation, is_apart);
+               : Touching(separation, last, is_apart);
+  }
+
+  Revisit RevisitLast() const {
+    const ClosestFeatures last{state_.feature_A, state_.feature_B};
+    if (!last.SpanFacet()) return {};
+    return RevisitFacet(pair_, SurfaceRule::kWholeBoundary, last.feature_A,
+                        last.feature_B, state_.n);
+  }
+
+  // Whether a walk from the last facet is worth its time.
+  bool MayOverlap(const Revisit& last) const {
+    return last.status == RevisitStatus::kGone
+               ? !state_.is_apart && !state_.feature_A.is_none()
+               : last.facet.h < 0;
+  }
+
+  // Whether the origin is in the pyramid over a facet of A ⊖ B with its apex at
+  // the difference of the centroids: then the pair overlaps. The line from the
+  // apex through the origin must meet the facet.
+  bool IsUnderFacet(const Depth& depth) const {
+    const Vec3& n = depth.best.n;
+    const Vec3 apex = pair_.A.centroid - pair_.X_AB * pair_.B.centroid;
+    const double behind = n.dot(apex);
+    const double aside = (apex - behind * n).norm();
+    return depth.best.h < -kLayerShare * pair_.scale() && behind > 0 &&
+           depth.clearance * behind > -depth.best.h * aside;
+  }
+
+  // After answers without a search, one starts from the last features.
+  void StartAtLast() {
+    const auto spanning =
+        SpanningVertices(pair_, state_.feature_A, state_.feature_B);
+    std::copy(spanning.begin(), spanning.end(),
+              state_.simplex.vertex_pairs.begin());
+    state_.simplex.size = 3;
+  }
+
+  // Whether the planes of a facet's features are apart beyond doubt. The foot
+  // of the origin is inside the facet, so then their distance is that of the
+  // bodies, unless facets are flat only within a tolerance.
+  bool IsApart(double h) const {
+    return h >= kLayerShare * pair_.scale() && pair_.A.hidden_start.empty() &&
+           pair_.B.hidden_start.empty();
   }
 
   // The pair overlaps, or is so little apart that both answers are needed.
-  PairContact Touching(const Separation& separation, bool is_apart) {
-    const Depth depth = FindDepth();
+  PairContact Touching(const Separation& separation, const Revisit& last,
+                       bool is_apart) {
+    const Depth depth = FindDepth(last);
     const bool has_facet = depth.status != DepthStatus::kNoFacet;
     if (is_apart) {
       MinkowskiVertex vertex_pair = separation.simplex.vertex_pairs[0];
@@ -70,12 +128,16 @@ class Query {
 
   PairContact Apart(const Separation& separation) {
     state_.vertex_pair = separation.simplex.vertex_pairs[0];
-    state_.feature_A = state_.feature_B = Feature();
-    return ContactApart(pair_, separation);
+    const PairContact contact = ContactApart(pair_, separation);
+    state_.is_apart = true;
+    state_.feature_A = contact.feature_A;
+    state_.feature_B = contact.feature_B;
+    return contact;
   }
 
   PairContact AtFacet(const Depth& depth) {
     state_.vertex_pair = depth.vertex_pair;
+    state_.is_apart = false;
     state_.feature_A = depth.best.feature_A;
     state_.feature_B = depth.best.feature_B;
     return ContactAtFacet(pair_, depth.best,
@@ -99,8 +161,8 @@ class Query {
     contact->p_b = separation.p_a - contact->distance * contact->n;
   }
 
-  Depth FindDepth() {
-    const Depth local = FindLocalDepth();
+  Depth FindDepth(const Revisit& last) {
+    const Depth& local = LocalDepth(last);
     if (global_ == nullptr || local.status == DepthStatus::kNoFacet) {
       return local;
     }
@@ -112,29 +174,23 @@ class Query {
             least.facet, least.facet.h, least.vertex_pair};
   }
 
-  // Under coherent motion the last facet is mostly still the answer, and one
-  // comparison proves it. Bodies that were apart enter through the facet that
-  // their closest features span.
-  Depth FindLocalDepth() {
-    const bool is_entry = state_.feature_A.is_none();
-    ClosestFeatures features{state_.feature_A, state_.feature_B};
-    if (is_entry) {
-      if (last_simplex_.size != 3) return FindColdDepth();
-      features = FeaturesOfSimplex(pair_, last_simplex_, state_.n);
-      if (!features.SpanFacet()) return FindColdDepth();
-    }
-    const Revisit last =
-        RevisitFacet(pair_, SurfaceRule::kWholeBoundary, features.feature_A,
-                     features.feature_B, state_.n);
+  const Depth& LocalDepth(const Revisit& last) {
+    if (!local_) local_ = FindLocalDepth(last);
+    return *local_;
+  }
+
+  // Bodies that were apart enter through the facet that their closest features
+  // span.
+  Depth FindLocalDepth(const Revisit& last) {
     if (last.status == RevisitStatus::kMinimum) {
       return {DepthStatus::kLocalMinimum, last.facet, last.facet.h,
-              last.vertex_pair};
+              last.vertex_pair, last.clearance};
     }
     if (last.status == RevisitStatus::kFacet) {
       return WalkDepth(pair_, last.vertex_pair, SurfaceRule::kWholeBoundary,
-                       &last.facet, kNoPromotion, &workspace_.depth);
+                       &last, kNoPromotion, &workspace_.depth);
     }
-    if (is_entry) return FindColdDepth();
+    if (state_.is_apart || state_.feature_A.is_none()) return FindColdDepth();
     MinkowskiVertex vertex_pair = state_.vertex_pair;
     SupportGap(pair_, state_.n, &vertex_pair);
     const Depth depth =
@@ -166,8 +222,8 @@ class Query {
   const PosedPair& pair_;
   PairState& state_;
   PairWorkspace& workspace_;
-  GlobalDepthState* const global_;   // null where the depth is tracked
-  SimplexVertexPairs last_simplex_;  // of the previous tick
+  GlobalDepthState* const global_;  // null where the depth is tracked
+  std::optional<Depth> local_;      // once it was wanted
 };
 
 }  // namespace

@@ -4,29 +4,14 @@
 #include <array>
 #include <limits>
 
+#include "pair/pair_contact_builders.h"
+
 namespace drake_haptics {
 namespace {
 
 constexpr int kMaxGrowth = 1024;
 // Height that is round-off, as a share of the size.
 constexpr double kThinShare = 1e-13;
-
-// Vertex number k of three that span the feature.
-int AffineBasisVertex(const Polytope& polytope, Feature feature, int k,
-                      int far_end) {
-  switch (feature.kind()) {
-    case FeatureKind::kVertex:
-      return feature.index();
-    case FeatureKind::kEdge: {
-      const Polytope::Edge& edge = polytope.edges[feature.index()];
-      return k == far_end ? edge.v1 : edge.v0;
-    }
-    default: {
-      const auto loop = polytope.loop_of(feature.index());
-      return loop[loop.size() * k / 3];
-    }
-  }
-}
 
 class Growth {
  public:
@@ -54,10 +39,10 @@ class Growth {
   void Start(const DepthCandidate& facet) {
     std::array<MinkowskiVertex, 4> vertex_pairs;
     std::array<Vec3, 3> p;
+    const auto spanning =
+        SpanningVertices(pair_, facet.feature_A, facet.feature_B);
     for (int k = 0; k < 3; ++k) {
-      // Two edges span a parallelogram: take three of its corners.
-      vertex_pairs[k] = {AffineBasisVertex(pair_.A, facet.feature_A, k, 1),
-                         AffineBasisVertex(pair_.B, facet.feature_B, k, 2)};
+      vertex_pairs[k] = spanning[k];
       p[k] = pair_.a(vertex_pairs[k].a) - pair_.b(vertex_pairs[k].b);
     }
     // The outward normal of A ⊖ B is opposite to n.

@@ -26,15 +26,14 @@ class Overlay {
         workspace_(*workspace),
         fan_A_(pair.A.fan_of(vertex_pair.a)),
         fan_B_(pair.B.fan_of(vertex_pair.b)),
-        w_(pair.a(vertex_pair.a) - pair.b(vertex_pair.b)),
-        w_B_(pair.X_AB.R.transpose() * w_) {}
+        w_(pair.a(vertex_pair.a) - pair.b(vertex_pair.b)) {}
 
   void Run() {
     // Once a good answer is known, most vertex pairs have no larger gap.
     if (floor_ < 0 && !OverlayMayExceed(pair_, vertex_pair_, w_, floor_))
       return;
     FillGaps(fan_A_, -w_, &workspace_.gaps_A);
-    FillGaps(fan_B_, w_B_, &workspace_.gaps_B);
+    FillGaps(fan_B_, pair_.X_AB.R.transpose() * w_, &workspace_.gaps_B);
     AddFacetsOfA();
     AddFacetsOfB();
     AddEdgePairs();
@@ -168,8 +167,7 @@ class Overlay {
   double floor_;
   DepthWorkspace& workspace_;
   const Fan fan_A_, fan_B_;
-  const Vec3 w_;    // the vertex of A ⊖ B, in A's frame
-  const Vec3 w_B_;  // the same in B's frame
+  const Vec3 w_;  // the vertex of A ⊖ B, in A's frame
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "pair/gauss_overlay.h"
 #include "pair/minkowski_facet_vertices.h"
+#include "pair/warm_facet.h"
 
 namespace drake_haptics {
 namespace {
@@ -22,9 +23,9 @@ class Walk {
     workspace_.closed.clear();
   }
 
-  Depth Run(const MinkowskiVertex& start, const DepthCandidate* known) {
-    if (known != nullptr) Add(*known);
-    Visit(start);
+  Depth Run(const MinkowskiVertex& start, const Revisit* known) {
+    if (known != nullptr) Add(known->facet);
+    if (best_ < 0 || IsOpen(*known, start)) Visit(start);
     Depth result;
     result.vertex_pair = start;
     // Each round visits the vertex pairs of one facet: the best supported one
@@ -34,12 +35,15 @@ class Walk {
       if (target < 0) break;
       const int before = best_;
       const bool may_step = best_ < 0 || num_steps++ < bounds_.max_steps;
-      if (!may_step || !VisitVertexPairsOf(target, &result.vertex_pair)) {
+      if (!may_step ||
+          !VisitVertexPairsOf(target, target == 0 ? known : nullptr,
+                              &result.vertex_pair)) {
         result.status = DepthStatus::kBounded;
         break;
       }
       if (best_ >= 0 && best_ == before) {
         result.status = DepthStatus::kLocalMinimum;
+        result.clearance = clearance_;
         break;
       }
       if (best_ < 0) workspace_.closed[target] = 1;
@@ -88,12 +92,38 @@ class Walk {
     }
   }
 
-  // Visits all vertex pairs of a facet; returns false if the bound on vertex
-  // pairs without an answer stops it.
-  bool VisitVertexPairsOf(int target, MinkowskiVertex* last) {
-    const DepthCandidate facet = workspace_.candidates[target];
+  static bool IsOpen(const Revisit& facet, const MinkowskiVertex& vertex_pair) {
+    const auto end = facet.open.begin() + facet.num_open;
+    return !facet.has_list ||
+           std::find(facet.open.begin(), end, vertex_pair) != end;
+  }
+
+  // Lists the vertex pairs of a facet around which a better one may be.
+  void ListOpen(const DepthCandidate& facet, const Revisit* known) {
+    if (best_ >= 0) {
+      const Revisit again =
+          known != nullptr
+              ? *known
+              : RevisitFacet(pair_, SurfaceRule::kWholeBoundary,
+                             facet.feature_A, facet.feature_B, facet.n);
+      clearance_ = again.clearance;
+      if (again.status == RevisitStatus::kMinimum || again.has_list) {
+        workspace_.corners.assign(again.open.begin(),
+                                  again.open.begin() + again.num_open);
+        return;
+      }
+    }
     ListMinkowskiFacetVertices(pair_, facet.feature_A, facet.feature_B, facet.n,
                                &workspace_.corners);
+  }
+
+  // Visits the vertex pairs of a facet around which a better one may be;
+  // returns false if the bound on vertex pairs without an answer stops it.
+  // @param known the facet's revisit, or null.
+  bool VisitVertexPairsOf(int target, const Revisit* known,
+                          MinkowskiVertex* last) {
+    const DepthCandidate facet = workspace_.candidates[target];
+    ListOpen(facet, known);
     for (const MinkowskiVertex& vertex_pair : workspace_.corners) {
       const auto& visited = workspace_.visited;
       if (std::find(visited.begin(), visited.end(), vertex_pair) !=
@@ -143,13 +173,14 @@ class Walk {
   const SurfaceRule rule_;
   const WalkBounds bounds_;
   DepthWorkspace& workspace_;
-  int best_ = -1;  // the best candidate that both surfaces support
+  int best_ = -1;          // the best candidate that both surfaces support
+  double clearance_ = -1;  // of the last facet whose vertex pairs were listed
 };
 
 }  // namespace
 
 Depth WalkDepth(const PosedPair& pair, const MinkowskiVertex& start,
-                SurfaceRule rule, const DepthCandidate* known,
+                SurfaceRule rule, const Revisit* known,
                 const WalkBounds& bounds, DepthWorkspace* workspace) {
   assert(start.a >= 0 && start.a < pair.A.num_vertices());
   assert(start.b >= 0 && start.b < pair.B.num_vertices());

@@ -43,12 +43,17 @@ enum class DepthStatus {
   kNoFacet        ///< the Minkowski difference has no facet here (it is flat)
 };
 
+struct Revisit;
+
 struct Depth {
   DepthStatus status = DepthStatus::kNoFacet;
   DepthCandidate best;
   double shallowest = 0;  ///< largest gap of all facets seen, virtual or not, m
   MinkowskiVertex
       vertex_pair;  ///< one vertex pair of the answer: the next walk's start
+  /// Least distance of the origin's foot from the answer's rim, m; negative if
+  /// outside or not known.
+  double clearance = -1;
 };
 
 /// Buffers of a walk, kept between ticks so that a warm walk allocates nothing.
@@ -77,12 +82,11 @@ struct DepthWorkspace {
 /// the walk, the best facet seen still bounds the depth from above.
 /// @param start a vertex pair whose Gauss regions overlap: support vertices
 ///     along a direction.
-/// @param known a known facet of that vertex pair, or null. If it is supported,
-///     deeper facets are skipped.
+/// @param known a known facet of that vertex pair (warm_facet.h), or null. If
+///     it is supported, deeper facets are skipped.
 [[nodiscard]] Depth WalkDepth(const PosedPair& pair,
                               const MinkowskiVertex& start, SurfaceRule rule,
-                              const DepthCandidate* known,
-                              const WalkBounds& bounds,
+                              const Revisit* known, const WalkBounds& bounds,
                               DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -16,6 +16,23 @@ Feature SimplexFeature(const Polytope& polytope,
   return FeatureOfVertices(polytope, vertices, simplex.size, n);
 }
 
+// Vertex number k of three that span the feature.
+int AffineBasisVertex(const Polytope& polytope, Feature feature, int k,
+                      int far_end) {
+  switch (feature.kind()) {
+    case FeatureKind::kVertex:
+      return feature.index();
+    case FeatureKind::kEdge: {
+      const Polytope::Edge& edge = polytope.edges[feature.index()];
+      return k == far_end ? edge.v1 : edge.v0;
+    }
+    default: {
+      const auto loop = polytope.loop_of(feature.index());
+      return loop[loop.size() * k / 3];
+    }
+  }
+}
+
 bool IsBetter(const Depth& second, const Depth& first) {
   if (second.status == DepthStatus::kNoFacet) return false;
   if (first.status == DepthStatus::kNoFacet) return true;
@@ -45,6 +62,18 @@ ClosestFeatures FeaturesOfSimplex(const PosedPair& pair,
   return {SimplexFeature(pair.A, simplex, &MinkowskiVertex::a, -n),
           SimplexFeature(pair.B, simplex, &MinkowskiVertex::b,
                          pair.X_AB.R.transpose() * n)};
+}
+
+std::array<MinkowskiVertex, 3> SpanningVertices(const PosedPair& pair,
+                                                Feature feature_A,
+                                                Feature feature_B) {
+  std::array<MinkowskiVertex, 3> spanning;
+  for (int k = 0; k < 3; ++k) {
+    // Two edges span a parallelogram: take three of its corners.
+    spanning[k] = {AffineBasisVertex(pair.A, feature_A, k, 1),
+                   AffineBasisVertex(pair.B, feature_B, k, 2)};
+  }
+  return spanning;
 }
 
 PairContact ContactApart(const PosedPair& pair, const Separation& separation) {

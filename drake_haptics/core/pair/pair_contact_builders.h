@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "convex/support.h"
 #include "pair/local_penetration_walk.h"
 #include "pair/pair_contact.h"
@@ -36,6 +38,11 @@ struct ClosestFeatures {
 ClosestFeatures FeaturesOfSimplex(const PosedPair& pair,
                                   const SimplexVertexPairs& simplex,
                                   const Vec3& n);
+
+/// Three vertices that span the difference of two features, which is a facet.
+std::array<MinkowskiVertex, 3> SpanningVertices(const PosedPair& pair,
+                                                Feature feature_A,
+                                                Feature feature_B);
 
 /// The contact at the closest points of a pair that is apart.
 PairContact ContactApart(const PosedPair& pair, const Separation& separation);

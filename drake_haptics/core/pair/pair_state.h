@@ -10,11 +10,13 @@ namespace drake_haptics {
 
 /// State of a pair from one tick to the next.
 struct PairState {
-  SimplexVertexPairs simplex;   ///< simplex of the last separation query
+  SimplexVertexPairs simplex;   ///< of the last tick's separation query; empty
+                                ///< if the tick needed none
+  bool is_apart = false;        ///< whether the features are the closest ones
   Vec3 n = Vec3::Zero();        ///< last normal, in A's frame; zero if none
   MinkowskiVertex vertex_pair;  ///< support vertices along the last normal
-  Feature feature_A;  ///< features of the last depth; none if the last
-  Feature feature_B;  ///< answer was not a depth
+  Feature feature_A;  ///< features of the last contact; none if it was grazing
+  Feature feature_B;
 };
 
 /// Buffers of a query, kept between ticks so that a warm one allocates nothing.

@@ -26,17 +26,10 @@ double Reach(const Polytope& P, int v, const Vec3& direction) {
   return reach;
 }
 
-// The least clearance of a point on a facet's plane from the facet's rim;
+// Clearance of a point on a facet's plane from side k of the facet loops;
 // negative outside.
-double Clearance(const Polytope& P, int facet, const Vec3& point) {
-  double clearance = std::numeric_limits<double>::infinity();
-  const int start = P.facet_loop_start[facet];
-  const int end = P.facet_loop_start[facet + 1];
-  for (int k = start; k < end; ++k) {
-    const Vec3& corner = P.vertices[P.facet_loop[k]];
-    clearance = std::min(clearance, P.facet_loop_side[k].dot(corner - point));
-  }
-  return clearance;
+double Clearance(const Polytope& P, int k, const Vec3& point) {
+  return P.facet_loop_side[k].dot(P.vertices[P.facet_loop[k]] - point);
 }
 
 // tan(φ/2) for the largest angle between the direction and the facets around a
@@ -50,74 +43,102 @@ double TurnAroundVertex(const Polytope& P, int v, const Vec3& direction) {
                          : GaussAngleBound(cosine);
 }
 
-struct FacetVisit {
-  bool is_facet = false;
-  bool is_minimum = false;
-  double h = 0;
-};
-
-// Evaluates a facet of P against vertex v of Q, which is `point_P` in P's
-// frame; `outward_Q` is the facet's normal in Q's frame.
-FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
-                 const Vec3& point_P, const Vec3& outward_Q) {
-  FacetVisit result;
-  const double reach = Reach(Q, v, -outward_Q);
-  const double slack = kRegionSlack * Q.radius;
-  result.is_facet = reach <= slack;
-  if (!result.is_facet) return result;
-  const Polytope::Facet& plane = P.facets[facet];
-  result.h = plane.normal.dot(point_P) - plane.offset;
-  const double depth = -result.h;
-  const double clearance = Clearance(P, facet, point_P);
-  // If Q lies flush, facets around its other vertices touch this one too.
-  const bool is_flush = reach >= -kFlushSlack * Q.radius;
-  result.is_minimum =
-      clearance > 0 &&
-      (clearance > depth * plane.turn ||
-       (!is_flush && clearance > depth * TurnAroundVertex(Q, v, -outward_Q)));
-  return result;
+// Whether a clearance excludes shallower facets beyond a side: `needed` is the
+// depth times the tangent of half the largest angle.
+bool IsFar(double clearance, double needed) {
+  return clearance > 0 && clearance > needed;
 }
 
-Revisit Finish(const PosedPair& pair, SurfaceRule rule, const FacetVisit& visit,
-               const Vec3& n, Feature a, Feature b,
-               const MinkowskiVertex& vertex_pair) {
-  Revisit result;
-  if (!visit.is_facet) return result;
+Revisit Start(const PosedPair& pair, SurfaceRule rule, double h, const Vec3& n,
+              Feature a, Feature b, const MinkowskiVertex& vertex_pair) {
   const NormalConeSupport support =
       rule == SurfaceRule::kWholeBoundary
           ? NormalConeSupport::kSupported
           : ClassifySupport(pair.A, a, n, pair.B, b,
                             pair.X_AB.R.transpose() * n);
-  result.facet = {visit.h, n, a, b, support};
+  Revisit result;
+  result.status = RevisitStatus::kFacet;
+  result.facet = {h, n, a, b, support};
   result.vertex_pair = vertex_pair;
-  result.status =
-      visit.is_minimum ? RevisitStatus::kMinimum : RevisitStatus::kFacet;
   return result;
+}
+
+// Lists a vertex pair, or drops the list if it has grown too long.
+void AddOpen(const MinkowskiVertex& vertex_pair, Revisit* result) {
+  result->has_list &= result->num_open < static_cast<int>(result->open.size());
+  if (result->has_list) result->open[result->num_open++] = vertex_pair;
+}
+
+// Compares the clearances from the sides of a facet of P with what vertex v of
+// Q needs, which is `point_P` in P's frame; `outward_Q` is the facet's normal
+// in Q's frame, `reach` that of v's neighbors.
+template <typename MakeVertexPair>
+void Judge(const Polytope& P, int facet, const Polytope& Q, int v,
+           const Vec3& point_P, const Vec3& outward_Q, double reach,
+           const MakeVertexPair& make_vertex_pair, Revisit* result) {
+  const int start = P.facet_loop_start[facet];
+  const int end = P.facet_loop_start[facet + 1];
+  double clearance = std::numeric_limits<double>::infinity();
+  for (int k = start; k < end; ++k) {
+    clearance = std::min(clearance, Clearance(P, k, point_P));
+  }
+  result->clearance = clearance;
+  const double depth = -result->facet.h;
+  double needed = depth * P.facets[facet].turn;
+  bool is_minimum = IsFar(clearance, needed);
+  // If Q lies flush, facets around its other vertices touch this one too.
+  if (!is_minimum && reach < -kFlushSlack * Q.radius) {
+    const double around_v = depth * TurnAroundVertex(Q, v, -outward_Q);
+    is_minimum = IsFar(clearance, around_v);
+    needed = std::min(needed, around_v);
+    result->has_list = true;
+    bool is_far = IsFar(Clearance(P, end - 1, point_P), needed);
+    for (int k = start; k < end; ++k) {
+      const bool was_far = is_far;
+      is_far = IsFar(Clearance(P, k, point_P), needed);
+      if (!was_far || !is_far) {
+        AddOpen(make_vertex_pair(P.facet_loop[k]), result);
+      }
+    }
+  }
+  if (is_minimum) result->status = RevisitStatus::kMinimum;
 }
 
 Revisit VisitFacetOfA(const PosedPair& pair, SurfaceRule rule, Feature a,
                       Feature b) {
   const int facet = a.index(), vertex = b.index();
-  const Vec3& outward = pair.A.facets[facet].normal;
-  const Vec3 outward_B = pair.X_AB.R.transpose() * outward;
-  const FacetVisit visit =
-      Visit(pair.A, facet, pair.B, vertex, pair.b(vertex), outward_B);
-  return Finish(pair, rule, visit, -outward, a, b,
-                {pair.A.loop_of(facet)[0], vertex});
+  const Polytope::Facet& plane = pair.A.facets[facet];
+  const Vec3 outward_B = pair.X_AB.R.transpose() * plane.normal;
+  const double reach = Reach(pair.B, vertex, -outward_B);
+  if (reach > kRegionSlack * pair.B.radius) return {};
+  const Vec3 point = pair.b(vertex);
+  Revisit result =
+      Start(pair, rule, plane.normal.dot(point) - plane.offset, -plane.normal,
+            a, b, {pair.A.loop_of(facet)[0], vertex});
+  Judge(
+      pair.A, facet, pair.B, vertex, point, outward_B, reach,
+      [&](int corner) { return MinkowskiVertex{corner, vertex}; }, &result);
+  return result;
 }
 
 Revisit VisitFacetOfB(const PosedPair& pair, SurfaceRule rule, Feature a,
                       Feature b) {
   const int facet = b.index(), vertex = a.index();
-  const Vec3 n = pair.X_AB.R * pair.B.facets[facet].normal;
-  const Vec3 point_B = pair.X_AB.R.transpose() * (pair.a(vertex) - pair.X_AB.p);
-  const FacetVisit visit = Visit(pair.B, facet, pair.A, vertex, point_B, n);
-  return Finish(pair, rule, visit, n, a, b, {vertex, pair.B.loop_of(facet)[0]});
+  const Polytope::Facet& plane = pair.B.facets[facet];
+  const Vec3 n = pair.X_AB.R * plane.normal;
+  const double reach = Reach(pair.A, vertex, -n);
+  if (reach > kRegionSlack * pair.A.radius) return {};
+  const Vec3 point = pair.X_AB.R.transpose() * (pair.a(vertex) - pair.X_AB.p);
+  Revisit result = Start(pair, rule, plane.normal.dot(point) - plane.offset, n,
+                         a, b, {vertex, pair.B.loop_of(facet)[0]});
+  Judge(
+      pair.B, facet, pair.A, vertex, point, n, reach,
+      [&](int corner) { return MinkowskiVertex{vertex, corner}; }, &result);
+  return result;
 }
 
 Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
                    Feature b, const Vec3& n_last) {
-  Revisit result;
   const Polytope::Edge& edge_A = pair.A.edges[a.index()];
   const Polytope::Edge& edge_B = pair.B.edges[b.index()];
   const Vec3 start_A = pair.a(edge_A.v0), start_B = pair.b(edge_B.v0);
@@ -126,13 +147,13 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
   const Vec3 cross = along_A.cross(along_B);
   const double length = cross.norm();
   const double length_A = along_A.norm(), length_B = along_B.norm();
-  if (!(length > kParallelSine * length_A * length_B)) return result;
+  if (!(length > kParallelSine * length_A * length_B)) return {};
   const Vec3 n = cross * ((cross.dot(n_last) < 0 ? -1.0 : 1.0) / length);
   // n is perpendicular to both edges, so one end stands for the whole edge.
   if (!IsFarthest(pair.A, edge_A.v0, -n, kRegionSlack * pair.A.radius) ||
       !IsFarthest(pair.B, edge_B.v0, pair.X_AB.R.transpose() * n,
                   kRegionSlack * pair.B.radius)) {
-    return result;
+    return {};
   }
   const Vec3 between = start_B - start_A;
   const double h = -n.dot(between);
@@ -140,21 +161,38 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
   const double s = between.cross(along_B).dot(cross) / scale;
   const double t = between.cross(along_A).dot(cross) / scale;
   // The facet is a parallelogram: clearances from its two pairs of sides.
-  const double clearance = std::min(std::min(s, 1 - s) * length / length_B,
-                                    std::min(t, 1 - t) * length / length_A);
-  FacetVisit visit;
-  visit.is_facet = true;
-  visit.h = h;
+  const double across_A = length / length_B, across_B = length / length_A;
+  const double clearance_A[2] = {s * across_A, (1 - s) * across_A};
+  const double clearance_B[2] = {t * across_B, (1 - t) * across_B};
+  const double clearance = std::min(
+      {clearance_A[0], clearance_A[1], clearance_B[0], clearance_B[1]});
+  Revisit result = Start(pair, rule, h, n, a, b, {edge_A.v0, edge_B.v0});
+  result.clearance = clearance;
   // If one body lies flush, only the other one bounds the turn.
-  const auto proves = [&](const Polytope& P, Feature edge,
-                          const Vec3& outward) {
-    return clearance > -h * P.edges[edge.index()].turn &&
-           WidestSupport(P, edge, outward) == edge;
-  };
-  visit.is_minimum =
-      clearance > 0 &&
-      (proves(pair.A, a, -n) || proves(pair.B, b, pair.X_AB.R.transpose() * n));
-  return Finish(pair, rule, visit, n, a, b, {edge_A.v0, edge_B.v0});
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  const double needed_A = -h * edge_A.turn, needed_B = -h * edge_B.turn;
+  const bool is_far_A = IsFar(clearance, needed_A);
+  const bool is_far_B = IsFar(clearance, needed_B);
+  const bool is_edge_A = WidestSupport(pair.A, a, -n) == a;
+  if (is_far_A && is_edge_A) {
+    result.status = RevisitStatus::kMinimum;
+    return result;
+  }
+  const bool is_edge_B = WidestSupport(pair.B, b, n_B) == b;
+  if (is_far_B && is_edge_B) {
+    result.status = RevisitStatus::kMinimum;
+    return result;
+  }
+  result.has_list = is_edge_A && is_edge_B;
+  const double needed = std::min(needed_A, needed_B);
+  for (int i = 0; result.has_list && i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      if (IsFar(std::min(clearance_A[i], clearance_B[j]), needed)) continue;
+      AddOpen({i == 0 ? edge_A.v0 : edge_A.v1, j == 0 ? edge_B.v0 : edge_B.v1},
+              &result);
+    }
+  }
+  return result;
 }
 
 }  // namespace

@@ -402,7 +402,7 @@ class Query {
       }
       if (last.status != RevisitStatus::kGone) {
         return WalkDepth(pair_, last.vertex_pair, SurfaceRule::kSurfaceOnly,
-                         &last.facet, Bounds(kWarmPromotionVertexPairs),
+                         &last, Bounds(kWarmPromotionVertexPairs),
                          &workspace_.depth);
       }
     }
