@@ -151,7 +151,7 @@ def _find_place(environment: Mesh) -> np.ndarray:
 
 
 def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParameters:
-    """Returns a path that comes down, goes round pressing, and goes up again."""
+    """Returns a path that comes down, goes around pressing, and goes up again."""
     place = _find_place(environment) - tip[:2]
     radius = min(_LARGEST_CIRCLE_M, 0.2 * min(environment.report.extent[:2]))
     angles = np.linspace(0.0, 2.0 * np.pi, _CIRCLE_POINTS + 1)

@@ -96,7 +96,9 @@ def test_eighty_columns_show_the_touch_and_leave_out_how_late_ticks_are():
 
 def test_a_driver_that_has_gone_is_not_said_to_wait_for_enter():
     fault = replace(make_reading(7), gate=GateState.FAULT, fault=Fault.STALE)
-    text = follow_device(lambda call: make_reading(call) if call < 9 else fault)
+    text = follow_device(
+        lambda call: make_reading(call) if call < 9 else fault, duration_s=0.3
+    )
     assert "ACTIVE" in text
     assert "FAULT (stale): silent for 1 s, is its driver running?" in text
     assert "Enter" not in text[text.index("silent") :]

@@ -70,7 +70,7 @@ def make_study(*rows: Row, peers: tuple[PeerRow, ...] = ()) -> AccuracyStudy:
     """A study of these rows, or of a scene's usual ones if there are none."""
     return AccuracyStudy(
         scene="cup_spoon",
-        description="A spoon goes round the inside of a cup & scrapes its wall.",
+        description="A spoon goes around the inside of a cup & scrapes its wall.",
         machine=MACHINE,
         ticks=4800,
         contact_ticks=3900,
