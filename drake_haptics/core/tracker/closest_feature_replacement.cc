@@ -5,7 +5,6 @@
 
 #include "pair/gauss_overlay.h"
 #include "pair/witness.h"
-#include "tracker/feature_coverage.h"
 #include "tracker/feature_replacement_reject.h"
 
 namespace drake_haptics {
@@ -20,13 +19,8 @@ constexpr double kRoundOff = 1e-12;
 class Search {
  public:
   Search(const PosedPair& pair, const Separation& separation,
-         const SurfaceRequest& request, bool surface_goes_on_flat,
-         PatchWorkspace* workspace)
-      : pair_(pair),
-        separation_(separation),
-        request_(request),
-        surface_goes_on_flat_(surface_goes_on_flat),
-        workspace_(*workspace) {}
+         const SurfaceRequest& request)
+      : pair_(pair), separation_(separation), request_(request) {}
 
   Promotion Run() {
     for (int i = 0; i < simplex().size; ++i) {
@@ -124,13 +118,7 @@ class Search {
         pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
     if (support != NormalConeSupport::kSupported) return;
     const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
-    // A flush face wider than the pieces has its lowest corner over another
-    // piece.
-    if (LateralOffset(pair_, a, b, witness) > 0 &&
-        !(surface_goes_on_flat_ &&
-          FindSurfacePatch(pair_, n, h, vertex_pair, witness.p_a,
-                           request_.tolerance, &workspace_, FacetEnd::kAllSides)
-              .has_faces)) {
+    if (LateralOffset(pair_, a, b, witness) > 0) {
       found_.ends_early = true;
       found_.is_beside_wall |=
           LateralOffsetOutOfWalls(pair_, a, b, n, witness,
@@ -145,8 +133,6 @@ class Search {
   const PosedPair& pair_;
   const Separation& separation_;
   const SurfaceRequest& request_;
-  const bool surface_goes_on_flat_;
-  PatchWorkspace& workspace_;
   Promotion found_;
 };
 
@@ -154,11 +140,8 @@ class Search {
 
 Promotion PromoteClosestPoints(const PosedPair& pair,
                                const Separation& separation,
-                               const SurfaceRequest& request,
-                               bool surface_goes_on_flat,
-                               PatchWorkspace* workspace) {
-  return Search(pair, separation, request, surface_goes_on_flat, workspace)
-      .Run();
+                               const SurfaceRequest& request) {
+  return Search(pair, separation, request).Run();
 }
 
 }  // namespace drake_haptics

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "convex/support.h"
-#include "pair/contact_patch.h"
 #include "pair/local_penetration_walk.h"
 #include "pair/separation.h"
 #include "tracker/surface_request.h"
@@ -23,19 +22,14 @@ struct Promotion {
 /// Replaces closest points of the hulls that are not closest points of the
 /// surfaces, as at a concave corner or a seam: by the adjacent facet with the
 /// largest gap that faces a vertex of the other body, if that vertex is over it
-/// (paper, 5.3.2) or its face lies flush on it; else by two adjacent edges that
-/// cross.
+/// (paper, 5.3.2); else by two adjacent edges that cross.
 ///
 /// In a concave corner the vertex may be beyond the facet because A presses
 /// into the next wall. If it would be over the facet with A moved out of that
 /// wall, the closest points count, so that touching one wall does not lose
 /// another.
-/// @param surface_goes_on_flat whether the meshes rise little beyond the
-///     pieces.
 Promotion PromoteClosestPoints(const PosedPair& pair,
                                const Separation& separation,
-                               const SurfaceRequest& request,
-                               bool surface_goes_on_flat,
-                               PatchWorkspace* workspace);
+                               const SurfaceRequest& request);
 
 }  // namespace drake_haptics

@@ -149,9 +149,9 @@ class Walk {
     }
     MarkReached(neighbor.piece, neighbor.facet);
     workspace_.queue.push_back({neighbor.piece, neighbor.facet, vertex});
-    if (IsKnown(plane, y)) return;
-    workspace_.planes.push_back(plane);
-    Append(vertex, neighbor.piece, neighbor.facet);
+    const bool is_known = IsKnown(plane, y);
+    if (!is_known) workspace_.planes.push_back(plane);
+    Append(vertex, neighbor.piece, neighbor.facet, is_known);
   }
 
   // Whether a point is over a facet, or farther beyond the side through which
@@ -192,7 +192,9 @@ class Walk {
         });
   }
 
-  void Append(int vertex, int piece, int facet) {
+  // @param is_known whether a contact in the same plane is known: then only a
+  //     part of a face under pressure counts.
+  void Append(int vertex, int piece, int facet, bool is_known) {
     const Polytope& P = P_.decomposition.pieces[piece];
     const PosedPair pair = is_P_tool_ ? PosedPair{P, convex(), X_AB_}
                                       : PosedPair{convex(), P, X_AB_};
@@ -211,6 +213,7 @@ class Walk {
     const PressurePatch patch =
         FindSurfacePatch(pair, contact.n, contact.distance, vertex_pair,
                          contact.p_a, tolerance_, &workspace_.patch);
+    if (is_known && !patch.has_faces) return;
     SpreadOver(patch, vertex_pair, &contact);
     Contact in_world = InWorld(contact, X_WA_);
     in_world.piece_A = is_P_tool_ ? piece : q_;

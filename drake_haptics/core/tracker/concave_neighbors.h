@@ -31,7 +31,10 @@ namespace drake_haptics {
 ///   the other body's vertex lies in front of the other's plane;
 /// - the vertex deepest below its plane lies over it, or farther beyond the
 ///   edge through which the facet was reached than beyond any other, and not
-///   beyond a convex edge.
+///   beyond a convex edge;
+/// - in the plane of a contact that is known already, it carries a part of the
+///   pressure between two faces: the parts of a face that is cut into pieces
+///   push as the whole face does.
 /// A pair of pieces whose query gives a contact gets no other: the facets of a
 /// convex piece are a union.
 

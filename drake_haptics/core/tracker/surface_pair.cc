@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "convex/flush_features.h"
 #include "convex/normal_cone_support.h"
 #include "pair/gauss_overlay.h"
 #include "pair/pair_contact_builders.h"
@@ -125,8 +124,7 @@ class Query {
   // it.
   std::optional<PairContact> Promoted(const PairContact& closest) {
     const Promotion promotion =
-        PromoteClosestPoints(pair_, separation_, request_,
-                             IsSupported(closest, kFlush), &workspace_.patch);
+        PromoteClosestPoints(pair_, separation_, request_);
     ends_early_ = promotion.ends_early;
     if (promotion.facet.support != NormalConeSupport::kSupported) {
       if (promotion.is_beside_wall) return closest;
@@ -142,12 +140,11 @@ class Query {
     return state_.in_contact ? Held(state_.n) : TransferredFrom();
   }
 
-  bool IsSupported(const PairContact& contact,
-                   double slack = kSurfaceSlack) const {
+  bool IsSupported(const PairContact& contact) const {
     return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
                            contact.feature_B,
-                           pair_.X_AB.R.transpose() * contact.n,
-                           slack) == NormalConeSupport::kSupported;
+                           pair_.X_AB.R.transpose() * contact.n) ==
+           NormalConeSupport::kSupported;
   }
 
   bool HasBegun() const { return state_.overlaps && !did_overlap_; }
