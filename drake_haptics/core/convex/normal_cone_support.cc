@@ -98,7 +98,7 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
 
 // Support of one side; n points out of the polytope, in its frame.
 NormalConeSupport ClassifySide(const Polytope& polytope, Feature feature,
-                               const Vec3& n, double slack) {
+                               const Vec3& n) {
   const auto supported_if = [](bool condition) {
     return condition ? NormalConeSupport::kSupported
                      : NormalConeSupport::kOriginal;
@@ -113,8 +113,8 @@ NormalConeSupport ClassifySide(const Polytope& polytope, Feature feature,
       if (!edge.original || !LeavesEdge(polytope, edge, n)) {
         return NormalConeSupport::kVirtual;
       }
-      return supported_if(n.dot(edge.wings[0]) <= slack &&
-                          n.dot(edge.wings[1]) <= slack);
+      return supported_if(n.dot(edge.wings[0]) <= kSurfaceSlack &&
+                          n.dot(edge.wings[1]) <= kSurfaceSlack);
     }
     default: {
       // Vertices are never created by a decomposition: all are original.
@@ -122,9 +122,9 @@ NormalConeSupport ClassifySide(const Polytope& polytope, Feature feature,
         return NormalConeSupport::kVirtual;
       }
       const auto ring = polytope.ring_of(feature.index());
-      return supported_if(
-          std::all_of(ring.begin(), ring.end(),
-                      [&](const Vec3& r) { return n.dot(r) <= slack; }));
+      return supported_if(std::all_of(
+          ring.begin(), ring.end(),
+          [&](const Vec3& r) { return n.dot(r) <= kSurfaceSlack; }));
     }
   }
 }
@@ -133,11 +133,10 @@ NormalConeSupport ClassifySide(const Polytope& polytope, Feature feature,
 
 NormalConeSupport ClassifySupport(const Polytope& A, Feature feature_A,
                                   const Vec3& n_A, const Polytope& B,
-                                  Feature feature_B, const Vec3& n_B,
-                                  double slack) {
-  const NormalConeSupport of_A = ClassifySide(A, feature_A, -n_A, slack);
+                                  Feature feature_B, const Vec3& n_B) {
+  const NormalConeSupport of_A = ClassifySide(A, feature_A, -n_A);
   if (of_A == NormalConeSupport::kVirtual) return of_A;
-  return std::min(of_A, ClassifySide(B, feature_B, n_B, slack));
+  return std::min(of_A, ClassifySide(B, feature_B, n_B));
 }
 
 Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,

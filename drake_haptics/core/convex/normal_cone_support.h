@@ -25,11 +25,9 @@ inline constexpr double kSurfaceSlack = 1e-3;
 /// supported: the surface of A around its feature stays on A's side of the
 /// plane, that of B on B's side. A contact at the seam of two pieces, where the
 /// surface continues, is not.
-/// @param slack sine of the angle by which the surfaces may rise above the
-///     plane and still support the contact.
 [[nodiscard]] NormalConeSupport ClassifySupport(
     const Polytope& A, Feature feature_A, const Vec3& n_A, const Polytope& B,
-    Feature feature_B, const Vec3& n_B, double slack = kSurfaceSlack);
+    Feature feature_B, const Vec3& n_B);
 
 /// The smallest feature that contains the given vertices (one to four, repeats
 /// allowed); of several facets, the one that faces n most.
