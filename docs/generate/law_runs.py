@@ -50,7 +50,11 @@ class Loop(Protocol):
 
 
 class Penalty:
-    """The penalty law with the builder's default gains."""
+    """The penalty law with the builder's default gains.
+
+    Attributes:
+        ticks: What was found at each tick.
+    """
 
     def __init__(
         self,
@@ -61,23 +65,23 @@ class Penalty:
     ) -> None:
         self._gains = replace(GAINS["default"], tolerance_m=range_m)
         self._loop = PenaltyLoop(tool, solid, self._gains, q_WT)
-        self._ticks: list[Tick] = []
+        self.ticks: list[Tick] = []
 
     def tick(self, q_WH: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Returns X_WT (7,), contact's wrench (6,) on it, the hand's force (3,)."""
         tick = self._loop.tick(q_WH)
-        self._ticks.append(tick)
+        self.ticks.append(tick)
         return tick.state[:7], tick.F_contact_W, -tick.F_coupling_W[3:]
 
     def calc_work(self) -> np.ndarray:
         """Returns the energy that contact had given and held at each tick (n,), J."""
-        F = np.array([tick.F_contact_W for tick in self._ticks])
-        V = np.array([tick.state[7:] for tick in self._ticks])
+        F = np.array([tick.F_contact_W for tick in self.ticks])
+        V = np.array([tick.state[7:] for tick in self.ticks])
         # The trapezoidal rule is exact for a spring.
         power = np.einsum("ij,ij->i", 0.5 * (F[:-1] + F[1:]), V[1:])
         work = np.concatenate([[0.0], np.cumsum(power) * PERIOD_S])
         k, tolerance = self._gains.stiffness_N_per_m, self._gains.tolerance_m
-        clusters = [tick.clusters for tick in self._ticks]
+        clusters = [tick.clusters for tick in self.ticks]
         held = [0.5 * k * c.compression @ (tolerance - c.distance) for c in clusters]
         return work + np.array(held, dtype=float)
 
