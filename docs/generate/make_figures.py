@@ -66,6 +66,7 @@ FIGURES = (
     _table("verification/hard-cases", "hard_cases", 3),
     _table("verification/continuity", "sliding", 2),
     _table("verification/contact-laws", "law", 4),
+    _table("verification/contact-laws", "energy", 2),
     _table("gradients", "gradient", 5),
     _table("gradients", "loop_gradient", 2),
     _table("device-twin", "twin", 5),
