@@ -9,21 +9,12 @@
 
 #include "check.h"
 #include "pair/gauss_overlay.h"
+#include "pair/random_ball.h"
 
 namespace drake_haptics {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Polytope RandomBall(int n, std::mt19937* random) {
-  std::normal_distribution<double> normal;
-  std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) {
-    points.push_back(
-        Vec3(normal(*random), normal(*random), normal(*random)).normalized());
-  }
-  return MakePolytope(points);
-}
 
 // The largest gap of all facets at a vertex pair: the overlay without a floor.
 double LargestGap(const PosedPair& pair, const MinkowskiVertex& vertex_pair) {
@@ -46,8 +37,8 @@ void TestAgainstOverlay() {
   };
   int spared = 0, kept = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const Polytope A = RandomBall(8 + trial % 60, &random);
-    const Polytope B = RandomBall(8 + trial % 37, &random);
+    const Polytope A = MakeRandomBall(8 + trial % 60, &random);
+    const Polytope B = MakeRandomBall(8 + trial % 37, &random);
     Pose X_AB;
     X_AB.R = Eigen::AngleAxisd(normal(random), vector().normalized())
                  .toRotationMatrix();

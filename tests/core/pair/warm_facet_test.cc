@@ -11,21 +11,12 @@
 #include "check.h"
 #include "pair/gauss_overlay.h"
 #include "pair/minkowski_facet_vertices.h"
+#include "pair/random_ball.h"
 
 namespace drake_haptics {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Polytope RandomBall(int n, std::mt19937* random) {
-  std::normal_distribution<double> normal;
-  std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) {
-    points.push_back(
-        Vec3(normal(*random), normal(*random), normal(*random)).normalized());
-  }
-  return MakePolytope(points);
-}
 
 // The shallowest facet around a vertex pair: the overlay without a floor.
 DepthCandidate Shallowest(const PosedPair& pair,
@@ -56,8 +47,8 @@ void NothingExcludedIsShallower() {
   };
   int minima = 0, excluded = 0, open = 0;
   for (int trial = 0; trial < 1000; ++trial) {
-    const Polytope A = RandomBall(20 + trial % 200, &random);
-    const Polytope B = RandomBall(20 + trial % 137, &random);
+    const Polytope A = MakeRandomBall(20 + trial % 200, &random);
+    const Polytope B = MakeRandomBall(20 + trial % 137, &random);
     const Vec3 way = vector().normalized();
     const Pose X_AB{Eigen::AngleAxisd(normal(random), vector().normalized())
                         .toRotationMatrix(),
@@ -84,7 +75,7 @@ void NothingExcludedIsShallower() {
       CHECK(Shallowest(pair, corner).h <= facet.h + Tie(pair));
     }
   }
-  // All three occur: a proof, and a list of a part of the vertex pairs.
+  // Both occur: a proof, and a list of a part of the vertex pairs.
   CHECK(minima > 100);
   CHECK(excluded > 3 * minima + 100);
   CHECK(open > 100);
