@@ -245,11 +245,13 @@ def test_a_clone_whose_links_are_files_of_text_works(
         from pathlib import Path
         import drake_haptics
         from drake_haptics.common.files import resolve_package_url
+        from drake_haptics.evaluation.models import FOLDER
         from drake_haptics.scene.device_preset import list_device_presets
         from drake_haptics.web.server import read_page_file
         files = [*drake_haptics.list_scenes().values()]
         files += [*drake_haptics.list_meshes().values()]
         files += [*list_device_presets().values()]
+        files += (FOLDER / "evaluation").iterdir()
         files.append(resolve_package_url("package://drake_haptics/models/__init__.py"))
         files.append(Path(drake_haptics.get_include(), "drake_haptics", "gate.h"))
         print(len(files), all(Path(file).is_file() for file in files))
