@@ -31,7 +31,7 @@ class ModelSource:
     Attributes:
         file: Name of its file in a folder of real meshes.
         scale: Meters per unit of the file.
-        own: Name of the package's shape like it; empty if there is none.
+        own: Name of the shipped mesh that takes its place; empty where no mesh does.
     """
 
     file: str
