@@ -114,15 +114,20 @@ def _run_in_parts(
 
 
 def scale_times(times: TickTimes, ours: TickTimes, other: TickTimes) -> TickTimes:
-    """Returns times multiplied by the ratio of others to ours.
+    """Returns others' times, had the machine run ours as fast as in `times`.
 
-    If ours were shorter than the clock shows, the others themselves.
+    How fast the machine runs is one number, so that the percentiles keep their order:
+    the ratio of the medians, or of the lowest percentile of ours that the clock shows.
+    Others beside which it shows nothing stay as they are.
     """
-    times_us, ours_us, other_us = (
-        np.array(astuple(each)[1:]) for each in (times, ours, other)
-    )
-    ratio = np.divide(times_us, ours_us, out=np.ones(3), where=ours_us > 0.0)
-    return TickTimes(other.ticks, *(ratio * other_us).tolist())
+    shown = [
+        (time_us, our_us)
+        for time_us, our_us in zip(astuple(times)[1:], astuple(ours)[1:], strict=True)
+        if our_us > 0.0
+    ]
+    time_us, our_us = shown[0] if shown else (1.0, 1.0)
+    ratio = time_us / our_us
+    return TickTimes(other.ticks, *(ratio * each for each in astuple(other)[1:]))
 
 
 def combine(repeats: Sequence[TickTimes]) -> TickTimes:

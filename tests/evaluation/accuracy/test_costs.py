@@ -45,10 +45,19 @@ def test_times_are_scaled_as_the_scene_beside_them_ran():
         TickTimes(9, 200.0, 800.0, 900.0),
     )
     own = TickTimes(5, 100.0, 400.0, 1800.0)
-    assert scale_times(usual, disturbed, own) == TickTimes(5, 50.0, 100.0, 600.0)
+    assert scale_times(usual, disturbed, own) == TickTimes(5, 50.0, 200.0, 900.0)
     # The clock shows nothing of half the scene's ticks.
-    rare = TickTimes(9, 0.0, 200.0, 300.0)
-    assert scale_times(rare, rare, own) == own
+    rare, slow = TickTimes(9, 0.0, 200.0, 300.0), TickTimes(9, 0.0, 400.0, 300.0)
+    assert scale_times(rare, slow, own) == TickTimes(5, 50.0, 200.0, 900.0)
+    nothing = TickTimes(9, 0.0, 0.0, 0.0)
+    assert scale_times(nothing, nothing, own) == own
+
+
+def test_scaled_percentiles_keep_their_order():
+    """An interruption of one run made a 99th percentile larger than the 99.9th."""
+    scene, beside = TickTimes(9, 100.0, 200.0, 300.0), TickTimes(9, 100.0, 110.0, 600.0)
+    scaled = scale_times(scene, beside, TickTimes(9, 100.0, 200.0, 300.0))
+    assert scaled.median_us <= scaled.p99_us <= scaled.p99_9_us
 
 
 def test_scenes_that_take_turns_run_as_alone():
