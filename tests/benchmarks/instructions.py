@@ -82,7 +82,7 @@ def main() -> None:
     for kind in sys.argv[1:] or KINDS:
         for size in SIZES:
             pair = make_pair(kind, size)
-            X_WA = make_presses(pair, 1)[0].X_WA
+            X_WA = make_presses(pair, 1)[0]
             bodies = ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices)
             deep = ConvexPair(*bodies).query_trajectory(X_WA, np.eye(4)).distance < 0
             first = int(deep.argmax())

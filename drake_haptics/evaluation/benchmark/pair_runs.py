@@ -12,7 +12,7 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairLibrary,
     PairQuery,
 )
-from drake_haptics.evaluation.benchmark.pairs import PairShape, Press, make_presses
+from drake_haptics.evaluation.benchmark.pairs import PairShape, make_presses
 from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
 
 # Relative errors are of frames whose distance is at least this, m.
@@ -114,9 +114,9 @@ def run_pair(
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []
-    for press in make_presses(pair, presses):
-        times, last = _run_press(press, queries, repeats)
-        truths.append(find_truth(pair, press.X_WA, last))
+    for X_WA in make_presses(pair, presses):
+        times, last = _run_press(X_WA, queries, repeats)
+        truths.append(find_truth(pair, X_WA, last))
         seconds.append(times)
         answers.append(last)
     return [
@@ -128,13 +128,13 @@ def run_pair(
 
 
 def _run_press(
-    press: Press, queries: Sequence[PairQuery], repeats: int
+    X_WA: np.ndarray, queries: Sequence[PairQuery], repeats: int
 ) -> tuple[list[np.ndarray], list[PairAnswers]]:
     """Returns typical times (n,) and the answers of each query."""
     seconds: list[list[np.ndarray]] = [[] for _ in queries]
     answers: dict[int, PairAnswers] = {}
     for i in take_turns(range(len(queries)), repeats):
-        answers[i] = queries[i].run(press.X_WA)
+        answers[i] = queries[i].run(X_WA)
         seconds[i].append(answers[i].seconds)
     times = [typical(np.array(repeated)) for repeated in seconds]
     return times, [answers[i] for i in range(len(queries))]

@@ -98,31 +98,24 @@ def _directions(size: int) -> np.ndarray:
     return np.array(trimesh.creation.icosphere(divisions[size]).vertices)
 
 
-@dataclass(frozen=True)
-class Press:
-    """One press of A on B, as poses a tick apart; B rests at the world's origin.
-
-    Attributes:
-        X_WA: (n, 4, 4) poses of A.
-    """
-
-    X_WA: np.ndarray
-
-
-def make_presses(pair: PairShape, count: int) -> list[Press]:
-    """Returns presses in random directions and attitudes, the same on every call.
+def make_presses(pair: PairShape, count: int) -> list[np.ndarray]:
+    """Returns presses of A on B from random sides, the same on every call.
 
     A's center comes straight in, rests for an instant and withdraws, its speed a
     sine of at most 0.2 m/s, while A turns about a fixed axis at up to 2 rad/s,
     fastest where the center rests. At its deepest the center has gone 20 % of the
     offset at which the bodies touch in that direction and attitude; it starts as far
     outside.
+
+    Returns:
+        For each press the poses X_WA (n, 4, 4), a tick apart; B rests at the world's
+        origin.
     """
     rng = np.random.default_rng([pair.size, *pair.kind.encode()])
     return [_press(pair, rng) for _ in range(count)]
 
 
-def _press(pair: PairShape, rng: np.random.Generator) -> Press:
+def _press(pair: PairShape, rng: np.random.Generator) -> np.ndarray:
     way_W, axis_W = (unit(rng.normal(size=3)) for _ in range(2))
     R_deep = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
     touch_m = _touching_offset(pair, R_deep, way_W)
@@ -136,7 +129,7 @@ def _press(pair: PairShape, rng: np.random.Generator) -> Press:
     for X, offset, angle in zip(X_WA, offset_m, turn_rad, strict=True):
         X[:3, :3] = rotation(axis_W, angle) @ R_deep
         X[:3, 3] = offset * way_W
-    return Press(X_WA)
+    return X_WA
 
 
 def _touching_offset(pair: PairShape, R_WA: np.ndarray, way_W: np.ndarray) -> float:

@@ -59,11 +59,11 @@ def run_python_pair(
     for library in outside:
         queries[library.name] = library(*bodies).query
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in queries}
-    for press in make_presses(pair, presses):
+    for X_WA in make_presses(pair, presses):
         repeated: dict[str, list[list[float]]] = {name: [] for name in queries}
         for _ in range(repeats):
             for name, query in queries.items():
-                repeated[name].append(_timed(query, press.X_WA))
+                repeated[name].append(_timed(query, X_WA))
         for name in queries:
             seconds[name].append(typical(np.array(repeated[name])))
     medians = {n: 1e6 * float(np.median(np.concatenate(s))) for n, s in seconds.items()}

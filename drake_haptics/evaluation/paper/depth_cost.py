@@ -144,7 +144,7 @@ def measure_depth_costs(
     for k, triangles in enumerate(TRIANGLES):
         progress(f"depth of {triangles:,} triangles", k / (len(TRIANGLES) + 1))
         pair = make_balls(triangles)
-        deep = [_measure(pair, press.X_WA) for press in make_presses(pair, presses)]
+        deep = [_measure(pair, X_WA) for X_WA in make_presses(pair, presses)]
         seconds = np.concatenate([seconds for seconds, _ in deep])
         motions[triangles] = (pair, np.concatenate([X_WA for _, X_WA in deep[:2]]))
         median, p99 = 1e6 * np.percentile(seconds, [50, 99])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import linregress
 
 
 @dataclass(frozen=True)
@@ -46,13 +47,10 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(np.unique(x)) < 2:
         raise ValueError(f"x must have two different values or more, is {x}")
-    design = np.column_stack([x, np.ones_like(x)])
-    (slope, intercept), *_ = np.linalg.lstsq(design, y, rcond=None)
-    left = ((y - slope * x - intercept) ** 2).sum()
-    spread = ((y - y.mean()) ** 2).sum()
-    # A constant y is explained fully.
-    r_squared = 1.0 - left / spread if spread > 0.0 else 1.0
-    return LineFit(float(slope), float(intercept), float(r_squared))
+    found = linregress(x, y)
+    # A constant y has no correlation, and is explained fully.
+    r_squared = 1.0 if np.ptp(y) == 0.0 else found.rvalue**2
+    return LineFit(float(found.slope), float(found.intercept), float(r_squared))
 
 
 def fit_power(x: np.ndarray, y: np.ndarray) -> PowerFit:

@@ -231,7 +231,7 @@ def measure_pen_pass(divisions: int = 3, seconds: float = _SECONDS) -> PenPass:
     return PenPass(
         time_s=np.arange(len(X_WA)) / _RATE_HZ,
         triangles=len(sphere.triangles),
-        corner_deg=_find_corner(sphere),
+        corner_deg=_degrees(ball.face_adjacency_angles.max()),
         truth=truth,
         curves=curves,
         smoothness={n: measure_smoothness(c, truth) for n, c in curves.items()},
@@ -271,20 +271,3 @@ def _find_libraries() -> dict[str, _Follow]:
     if find_spec("coal") is not None:
         found["coal"] = _follow_with_coal
     return found
-
-
-def _find_corner(surface: Mesh) -> float:
-    """Returns the largest angle between neighboring faces, degrees."""
-    corners = surface.vertices[surface.triangles]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    face_of_side = {
-        (int(t[k]), int(t[(k + 1) % 3])): i
-        for i, t in enumerate(surface.triangles)
-        for k in range(3)
-    }
-    pairs = np.array(
-        [(i, face_of_side[b, a]) for (a, b), i in face_of_side.items() if a < b]
-    )
-    cosine = np.einsum("ni,ni->n", normal[pairs[:, 0]], normal[pairs[:, 1]])
-    return float(np.rad2deg(np.arccos(np.clip(cosine, -1.0, 1.0)).max()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +25,9 @@ from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems.contact.contact_query import ContactObject
 
-# How far beyond first touch the hand aims, mm: off, lightly, firmly, and so on.
-_RHYTHM_MM = (-4.0, 0.5, 1.0, 5.0, 8.0, 6.0, 1.0, 0.5, 6.0, 8.0, 0.5)
+# How far beyond first touch the hand aims, m, again and again: off, lightly, firmly,
+# and so on.
+_PRESSES_M = 1e-3 * np.array([-4, 0.5, 1, 5, 8, 6, 1, 0.5, 6, 8, 0.5])
 _REACH_M = 0.3
 # The real cup and spoon in the frames of the package's shapes: the cup stands at the
 # origin, the spoon lies along +x from its tip, its bowl open to +z.
@@ -95,7 +97,7 @@ def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
         )
     objects = (ContactObject("cup", cup.core, RigidTransform()),)
     places = []
-    press = _press_again()
+    press = cycle(_PRESSES_M)
     for turn in np.linspace(0.0, 2.0 * np.pi, 33):
         # The bowl's edge is on the wall; the handle leans to the other side.
         yaw = RotationMatrix.MakeZRotation(turn)
@@ -129,7 +131,7 @@ def _make_probe(
     target = decompose(mesh)
     objects = (ContactObject("target", target.core, RigidTransform()),)
     places = []
-    press = _press_again()
+    press = cycle(_PRESSES_M)
     for k, p_WQ in enumerate(_find_front(mesh)):
         # Its end leans to -y out of the model and up, by more and less in turn.
         lean = np.deg2rad(55.0 - 25.0 * np.cos(0.25 * k))
@@ -170,7 +172,7 @@ def _make_machine_room() -> Scenario:
     wrench = cut_shape("wrench")
     low, high = (RigidTransform(X) for X in wrench_path(2))
     places = []
-    press = _press_again()
+    press = cycle(_PRESSES_M)
     for k, share in enumerate(0.5 - 0.5 * np.cos(np.linspace(0.0, 4 * np.pi, 45))):
         rock = RotationMatrix.MakeZRotation(0.01 * np.sin(0.9 * k))
         p_WT = (1.0 - share) * low.translation() + share * high.translation()
@@ -192,10 +194,3 @@ def _move(mesh: Mesh, X_OM: RigidTransform) -> Mesh:
     """Returns a mesh in another frame."""
     vertices = mesh.vertices @ X_OM.rotation().matrix().T + X_OM.translation()
     return Mesh.from_arrays(vertices, mesh.triangles, name=mesh.report.source)
-
-
-def _press_again() -> Iterator[float]:
-    """Yields distances to press, m, without end; the first is off the surface."""
-    while True:
-        for press_mm in _RHYTHM_MM:
-            yield 1e-3 * press_mm

@@ -34,7 +34,7 @@ def test_distances_and_normals_are_those_of_the_enumeration(
         f"drake_haptics.evaluation.benchmark.libraries.with_{name}"
     )
     pair = make_pair(kind, 8)
-    X_WA = make_presses(pair, 1)[0].X_WA[::20]
+    X_WA = make_presses(pair, 1)[0][::20]
     exact = [signed_distance(place(pair.A_vertices, X), pair.B_vertices) for X in X_WA]
     assert min(exact) < 0 < max(exact)
     for library in module.LIBRARIES:
@@ -52,7 +52,7 @@ def test_a_query_forgets_the_last_motion() -> None:
     )
 
     pair = make_pair("ellipsoid", 42)
-    X_WA = make_presses(pair, 1)[0].X_WA[::10]
+    X_WA = make_presses(pair, 1)[0][::10]
     for library in ours:
         query = library.make_query(pair)
         first = query.run(X_WA)

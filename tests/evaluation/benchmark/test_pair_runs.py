@@ -76,7 +76,7 @@ def test_frames_are_sorted_by_the_sign_of_the_exact_distance() -> None:
     exact = np.concatenate(
         [
             [signed_distance(place(PAIR.A_vertices, X), PAIR.B_vertices) for X in way]
-            for way in (press.X_WA[1:] for press in make_presses(PAIR, 2))
+            for way in (X_WA[1:] for X_WA in make_presses(PAIR, 2))
         ]
     )
     assert right.apart.ticks == (exact > 0).sum()
@@ -108,7 +108,7 @@ def test_libraries_take_turns() -> None:
 
 
 def test_the_truth_is_the_exact_distance_whoever_finds_it() -> None:
-    X_WA = make_presses(PAIR, 1)[0].X_WA[::40]
+    X_WA = make_presses(PAIR, 1)[0][::40]
     right = right_answers(PAIR, X_WA)
     wrong = np.tile([0.0, 0.6, 0.8], (len(X_WA), 1))
     half = np.where(np.arange(len(X_WA))[:, None] % 2, right.nhat_BA_W, wrong)
@@ -120,7 +120,7 @@ def test_the_truth_is_the_exact_distance_whoever_finds_it() -> None:
 
 
 def test_frames_without_a_normal_do_not_hide_the_truth() -> None:
-    X_WA = make_presses(PAIR, 1)[0].X_WA[::100]
+    X_WA = make_presses(PAIR, 1)[0][::100]
     right = right_answers(PAIR, X_WA)
     none = PairAnswers(right.distance, np.full((len(X_WA), 3), np.nan), right.seconds)
     truth = find_truth(PAIR, X_WA, [none, right])
@@ -128,7 +128,7 @@ def test_frames_without_a_normal_do_not_hide_the_truth() -> None:
 
 
 def test_no_direction_has_a_larger_gap_than_the_truth() -> None:
-    X_WA = make_presses(PAIR, 1)[0].X_WA[::20]
+    X_WA = make_presses(PAIR, 1)[0][::20]
     truth = find_truth(PAIR, X_WA, [right_answers(PAIR, X_WA)])
     rng = np.random.default_rng(1)
     for _ in range(200):

@@ -38,8 +38,8 @@ def test_only_depths_are_timed():
     pair = make_balls(100)
     ours = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
     deep = sum(
-        int((ours.query_trajectory(p.X_WA, np.eye(4)).distance < 0).sum())
-        for p in make_presses(pair, 2)
+        int((ours.query_trajectory(X_WA, np.eye(4)).distance < 0).sum())
+        for X_WA in make_presses(pair, 2)
     )
     shown = []
     costs = measure_depth_costs(2, False, lambda what, share: shown.append(share))
@@ -60,7 +60,7 @@ def test_instructions_hardly_grow_with_triangles():
     motions = {}
     for triangles in (42, 5000):
         pair = make_balls(triangles)
-        X_WA = make_presses(pair, 1)[0].X_WA
+        X_WA = make_presses(pair, 1)[0]
         motions[triangles] = (pair, X_WA[len(X_WA) // 2 - 60 : len(X_WA) // 2 + 60])
     counts = count_depths(motions)
     assert 300 < counts[42] < 30_000

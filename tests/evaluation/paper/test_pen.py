@@ -86,15 +86,6 @@ def test_ours_is_near_the_perfect_sphere(passed):
     assert smooth.crossing_step_m <= smooth.true_distance_step_m
 
 
-def test_the_corner_is_the_largest_between_neighbors(passed):
-    """By another library."""
-    trimesh = pytest.importorskip("trimesh")
-    sphere = load_shape("sphere")
-    mesh = trimesh.Trimesh(sphere.vertices, sphere.triangles, process=False)
-    largest = np.rad2deg(mesh.face_adjacency_angles.max())
-    assert passed.corner_deg == pytest.approx(largest, rel=1e-6)
-
-
 def test_a_finer_sphere_is_nearer_to_the_perfect_one(passed):
     fine = measure_pen_pass(4, seconds=1.0)
     coarse, finer = passed.smoothness[OURS], fine.smoothness[OURS]
