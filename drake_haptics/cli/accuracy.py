@@ -15,7 +15,7 @@ from rich.text import Text
 
 from drake_haptics.analysis.jobs.study import StudyError
 from drake_haptics.cli import lessons
-from drake_haptics.cli.completion import complete_knob, complete_scene
+from drake_haptics.cli.completion import complete_scene, complete_setting
 from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.endings import ExitCode, naming
 from drake_haptics.cli.lessons import CommandWithExamples
@@ -61,15 +61,12 @@ from drake_haptics.evaluation.accuracy.report import (
     make_label,
     name_setting,
 )
-from drake_haptics.evaluation.accuracy.setting import (
-    Setting,
-    apply_checked,
-    parse_setting,
-)
+from drake_haptics.evaluation.accuracy.setting import Setting, read_setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
 from drake_haptics.report.page import check_page_path
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.validation import check_values
 from drake_haptics.simulation.run import RunError
 
 
@@ -144,7 +141,7 @@ _FILE: dict[str, Any] = {
     "words",
     multiple=True,
     metavar="KEY=VALUE",
-    shell_complete=complete_knob,
+    shell_complete=complete_setting,
     help="Measure this setting alone, such as contact.tolerance_m=0.0005; once more for"
     " each further key of it. `scene` is the scene as it is. Writes no page.",
 )
@@ -257,8 +254,8 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
     if not words:
         return None
     with naming("--only"):
-        setting = parse_setting(words, list_settings(scene))
-        apply_checked(setting, scene)
+        setting = read_setting(words, list_settings(scene))
+        check_values(setting.apply(scene))
     return [setting]
 
 

@@ -63,27 +63,11 @@ def complete_unit(
 def complete_setting(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
-    """Completes KEY=VALUE of a scene: keys, and the values of some of them."""
+    """Completes KEY=VALUE of a scene: keys, and devices after `device.preset=`."""
     from drake_haptics.scene.settings import list_setting_keys
 
-    return _complete_value(list_setting_keys(), incomplete)
-
-
-def complete_knob(
-    _: click.Context, __: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
-    """Completes KEY=VALUE where one key is that of all objects."""
-    from drake_haptics.scene.schema import EnvironmentObject, Scene
-    from drake_haptics.scene.settings import list_keys
-
-    each = list_keys(EnvironmentObject, "environment.")
-    return _complete_value([*list_keys(Scene), *each], incomplete)
-
-
-def _complete_value(keys: Iterable[str], incomplete: str) -> list[CompletionItem]:
-    """Completes a key, and devices after `device.preset=`."""
     if "=" not in incomplete:
-        return _complete([f"{key}=" for key in keys], incomplete)
+        return _complete([f"{key}=" for key in list_setting_keys()], incomplete)
     if not incomplete.startswith("device.preset="):
         return []
     from drake_haptics.scene.device_preset import list_device_presets

@@ -70,5 +70,5 @@ def _read(kind: Any, data: Any) -> Any:
     if get_origin(kind) is tuple:
         return tuple(map(_read, kinds, data))
     if kind is float:
-        return math.nan if data is None else _NUMBERS.get(data, data)
+        return math.nan if data is None else float(_NUMBERS.get(data, data))
     return data

@@ -4,26 +4,24 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import json
 import re
 import typing
 from collections.abc import Iterable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydrake.common.yaml import (
-    yaml_dump,
-    yaml_dump_typed,
-    yaml_load_data,
-    yaml_load_typed,
-)
+from pydrake.common.yaml import yaml_load_data
 
 from drake_haptics.common.errors import SceneError
+from drake_haptics.report.plain_data import read_figures
 from drake_haptics.scene.scene_file import place_files
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Waypoint
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys
 
-_STEP = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
+_INDEX = re.compile(r"\[\d+\]")
 
 
 def change_scene(scene: Scene, settings: Iterable[str]) -> Scene:
@@ -31,77 +29,115 @@ def change_scene(scene: Scene, settings: Iterable[str]) -> Scene:
 
     Args:
         scene: Scene to start from; it is not changed.
-        settings: Settings KEY=VALUE, the key as messages name it
-            (`contact.stiffness_N_per_m`, `environment[0].pose.position_m`), the value
-            as in a scene file. A key without a value is taken out, so that its default
-            holds, and an effect is gone. The scene is checked after all settings: of
-            two that need each other either may be first. The path of a mesh or a preset
-            is relative to the current folder.
+        settings: Settings KEY=VALUE, see `parse_setting` and `change_values`. The scene
+            is checked after all of them: of two that need each other either may be
+            first. The path of a mesh or a preset is relative to the current folder.
 
     Raises:
         SceneError: A setting is not of that form, its key is unknown, its file does not
             exist, or the value is impossible.
     """
-    data = yaml_load_data(yaml_dump_typed(scene))
-    for setting in settings:
-        key, equals, text = setting.partition("=")
-        if not equals:
-            raise SceneError(f"{setting}: is not of the form KEY=VALUE")
-        try:
-            value = yaml_load_data(text)
-        except Exception as error:  # Drake passes on what its YAML parser raises.
-            raise SceneError(f"{key}: cannot be read as YAML: {text}") from error
-        _set(data, key, value)
-    check_keys(Scene, data)
-    changed: Scene = yaml_load_typed(schema=Scene, data=yaml_dump(data))
+    changed = change_values(scene, [parse_setting(setting) for setting in settings])
     check_values(changed)
     place_files(changed, Path.cwd())
     return changed
 
 
-def list_setting_keys() -> list[str]:
-    """Returns the keys of a scene with one object and one waypoint."""
-    return [
+def parse_setting(setting: str) -> tuple[str, Any]:
+    """Returns the key and the value of KEY=VALUE, the value as in a scene file.
+
+    Raises:
+        SceneError: The text is not of that form, or the value is not YAML.
+    """
+    key, equals, text = setting.partition("=")
+    if not equals:
+        raise SceneError(f"{setting}: is not of the form KEY=VALUE")
+    try:
+        return key, json.loads(text)  # of 1e-3 PyYAML makes a text
+    except ValueError:
+        pass
+    try:
+        return key, yaml_load_data(text)
+    except Exception as error:  # Drake passes on what its YAML parser raises.
+        raise SceneError(f"{key}: cannot be read as YAML: {text}") from error
+
+
+def change_values(scene: Scene, changes: Iterable[tuple[str, Any]]) -> Scene:
+    """Returns a scene with other values, for `check_values` to check.
+
+    Args:
+        scene: Scene to start from; it is not changed.
+        changes: Keys as messages name them (`contact.stiffness_N_per_m`,
+            `environment[0].pose.position_m`), without an index in each entry of a list
+            (`environment.scale`); and their values, plain data. A key with None is
+            taken out, so that its default holds, and an effect is gone.
+
+    Raises:
+        SceneError: A key is unknown, or a value is not of its kind.
+    """
+    data = _drop_none(dataclasses.asdict(scene))
+    for key, value in changes:
+        _set(data, _split(key), value, key)
+    check_keys(Scene, data)
+    return read_figures(Scene, data)
+
+
+@cache
+def list_setting_keys() -> tuple[str, ...]:
+    """Returns the keys of a scene; those of entries of lists with and without index."""
+    return (
         *list_keys(Scene),
+        *list_keys(EnvironmentObject, "environment."),
         *list_keys(EnvironmentObject, "environment[0]."),
         *list_keys(Waypoint, "hand.path.waypoints[0]."),
-    ]
+    )
 
 
-def _set(data: Any, key: str, value: Any) -> None:
-    """Sets the value of a key, and makes missing mappings on the way."""
-    steps = _split(key)
-    place: Any = data
-    for i, step in enumerate(steps[:-1]):
-        if isinstance(place, dict) and place.get(step) is None:
+def _drop_none(data: Any) -> Any:
+    """Returns data as a scene file has them, without the keys that are None."""
+    if isinstance(data, dict):
+        return {k: _drop_none(v) for k, v in data.items() if v is not None}
+    return list(map(_drop_none, data)) if isinstance(data, list) else data
+
+
+def _set(place: Any, steps: Sequence[str | int], value: Any, key: str) -> None:
+    """Sets the value at some steps, and makes missing mappings on the way.
+
+    Raises:
+        SceneError: There is no such place.
+    """
+    step, *rest = steps
+    if isinstance(place, list) and isinstance(step, str):
+        for item in place:
+            _set(item, steps, value, key)
+        return
+    if isinstance(place, dict) and isinstance(step, str):
+        if place.get(step) is None:
+            if value is None:
+                return  # What is taken out is not there.
             place[step] = {}
-        place = _look_up(place, steps, i, key)
-    last = steps[-1]
-    if isinstance(place, dict) and value is not None:
-        place.setdefault(last)
-    _look_up(place, steps, len(steps) - 1, key)
-    if value is None:
-        del place[last]
+    elif not (isinstance(place, list) and isinstance(step, int) and step < len(place)):
+        size = f" of {len(place)}" if isinstance(place, list) else ""
+        raise SceneError(f"{key}: there is nothing at {step!r}{size}")
+    if rest:
+        _set(place[step], rest, value, key)
+    elif value is None:
+        del place[step]
     else:
-        place[last] = value
+        place[step] = value
 
 
 def _split(key: str) -> list[str | int]:
     """Returns the names and indices of a key.
 
     Raises:
-        SceneError: The text is not a key, or no scene has such a part.
+        SceneError: No scene has such a key.
     """
-    steps: list[str | int] = []
-    for part in key.split("."):
-        match = _STEP.fullmatch(part)
-        if match is None:
-            raise SceneError(f"{key}: is not a key of a scene")
-        steps.append(match[1])
-        steps += [int(i) for i in re.findall(r"\d+", match[2])]
-    if steps[0] not in Scene.__dataclass_fields__:
+    names = _INDEX.sub("", key)
+    known = {_INDEX.sub("", name) for name in list_setting_keys()}
+    if not any(name == names or name.startswith(f"{names}.") for name in known):
         raise SceneError(f"{key}: is not a key of a scene; {_make_hint(key)}")
-    return steps
+    return [int(s) if s.isdigit() else s for s in re.findall(r"\w+", key)]
 
 
 def _make_hint(key: str) -> str:
@@ -113,24 +149,6 @@ def _make_hint(key: str) -> str:
     if not near:
         return "docs/reference/every-key.yaml has all"
     return f"did you mean {' or '.join(map(repr, near))}?"
-
-
-def _look_up(place: Any, steps: Sequence[str | int], i: int, key: str) -> Any:
-    """Returns the value in a mapping or list at a step of a key.
-
-    Raises:
-        SceneError: There is no such value.
-    """
-    step = steps[i]
-    if isinstance(step, str) and isinstance(place, dict) and step in place:
-        return place[step]
-    if isinstance(step, int) and isinstance(place, list) and step < len(place):
-        return place[step]
-    words = f"{key}: there is nothing at {step!r}"
-    if isinstance(place, list):
-        counted = f"a list of {len(place)}, the first of which is {steps[i - 1]}[0]"
-        words += f"; {steps[i - 1]} is {counted}"
-    raise SceneError(words)
 
 
 def list_keys(schema: type, where: str = "") -> list[str]:

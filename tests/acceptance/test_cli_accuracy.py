@@ -185,7 +185,7 @@ def test_an_impossible_budget_is_told_with_status_3(invoke, sample, fresh_runs):
     [
         (["--out", "page.png"], "must not be called page.png"),
         (["--out", "nowhere/page.html"], "--out: there is no folder nowhere"),
-        (["--only", "contact.depth"], "'contact.depth' is not KEY=VALUE"),
+        (["--only", "contact.depth"], "contact.depth: is not of the form KEY=VALUE"),
         (
             ["--only", "contact.deep=1"],
             "is not a key of a scene; did you mean 'contact.depth'",

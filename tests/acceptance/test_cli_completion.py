@@ -65,9 +65,9 @@ def test_keys_of_a_scene_and_devices_for_it(line):
     presets = [f"device.preset={name}" for name in list_device_presets()]
     assert values(f"{line}device.preset=") == presets
     assert values(f"{line}contact.tolerance_m=") == []
-    # A setting of one object, or of all as `accuracy` turns them.
-    first = "environment." if "--only" in line else "environment[0]."
-    assert values(f"{line}{first}sc") == [f"{first}scale="]
+    # Of all objects, and of one.
+    for which in ("environment.", "environment[0]."):
+        assert values(f"{line}{which}sc") == [f"{which}scale="]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -28,6 +28,7 @@ def test_numbers_texts_and_lists_are_set(scene):
     assert changed.hand.grip == "firm"
     assert changed.environment[0].pose.position_m == [0.1, 0.0, 0.0]
     assert changed.hand.path.waypoints[0].position_m == [0.0, 0.0, 0.05]
+    assert change_scene(scene, ["environment.scale=2"]).environment[0].scale == 2.0
     # Nothing else changes, nor does the scene that was given.
     assert scene.hand.grip == "nominal"
     assert changed.tool == scene.tool
@@ -38,6 +39,8 @@ def test_an_effect_that_is_not_there_is_made(scene):
     changed = change_scene(scene, ["effects.friction.coefficient=0.7"])
     assert changed.effects.friction.coefficient == 0.7
     assert change_scene(changed, ["effects.friction="]) == scene
+    # Nor is one made to take something out of it.
+    assert change_scene(scene, ["effects.friction.coefficient="]) == scene
 
 
 def test_settings_that_need_each_other_count_together(scene):
@@ -58,7 +61,7 @@ def test_files_are_found_from_the_current_folder(scene, tmp_path, monkeypatch):
     ("setting", "words"),
     [
         ("contact.stiffness_N_per_m", "KEY=VALUE"),
-        ("contact.stifness_N_per_m=1", "did you mean 'stiffness_N_per_m'"),
+        ("contact.stifness_N_per_m=1", r"did you mean 'contact\.stiffness_N_per_m'"),
         ("break_away_m=1", "did you mean 'effects.friction.break_away_m'"),
         ("cantact.depth=global", "did you mean 'contact.depth'"),
         ("xyzzy=1", "every-key.yaml"),
@@ -66,11 +69,14 @@ def test_files_are_found_from_the_current_folder(scene, tmp_path, monkeypatch):
         ("contact.stiffness_N_per_m=much", "expected a finite number"),
         ("contact.stiffness_N_per_m=-1", "contact.stiffness_N_per_m"),
         ("contact.stiffness_N_per_m=[", "cannot be read as YAML"),
-        ("environment[3].scale=2", r"environment\[3\].scale: there is nothing at 3"),
+        (
+            "environment[3].scale=2",
+            r"environment\[3\].scale: there is nothing at 3 of 1",
+        ),
         ("contact[0]=2", "nothing at 0"),
-        ("environment.scale=2", r"a list of 1, the first of which is environment\[0\]"),
-        ("contact.tolerance_m.deep=2", "nothing at 'deep'"),
-        ("effects.braking=", "nothing at 'braking'"),
+        ("environment.weight=2", "not a key of a scene"),
+        ("contact.tolerance_m.deep=2", "not a key of a scene"),
+        ("effects.breaking=", "did you mean 'effects.braking"),
         ("=3", "not a key"),
         ("a..b=3", "not a key"),
         ("contact=3", "expected keys"),

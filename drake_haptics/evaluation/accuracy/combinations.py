@@ -9,9 +9,10 @@ from typing import Any
 
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
-from drake_haptics.evaluation.accuracy.setting import Setting, apply_checked, is_effect
+from drake_haptics.evaluation.accuracy.setting import Setting, is_effect
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.validation import check_values
 
 # Another rate, device or hand does not make a tick cheaper; passivity is for safety.
 _NEVER = ("device.", "coupling.", "hand.", "effects.passivity")
@@ -126,7 +127,7 @@ def _fits(rows: tuple[Row, ...], scene: Scene) -> bool:
     if any(changes[k] != v for row in rows for k, v in row.setting.changes.items()):
         return False
     try:
-        apply_checked(Setting("several", "", changes), scene)
+        check_values(Setting("several", "", changes).apply(scene))
     except HapticsError:
         return False
     return True

@@ -17,7 +17,7 @@ from drake_haptics.evaluation.accuracy.report import (
     group_rows,
     make_cells,
 )
-from drake_haptics.evaluation.accuracy.setting import parse_setting
+from drake_haptics.evaluation.accuracy.setting import read_setting
 
 STUDY = make_study(peers=make_peers())
 
@@ -80,7 +80,7 @@ def test_every_row_has_its_figures_and_a_command_that_asks_for_it(page):
         assert tuple(cells) == make_cells(row, columns)
         words = shlex.split(command)
         assert set(words[::2]) == {"--only"}
-        assert parse_setting(words[1::2]).changes == row.setting.changes
+        assert read_setting(words[1::2]).changes == row.setting.changes
 
 
 def test_bars_are_as_long_as_times_and_decades_of_error(page):
