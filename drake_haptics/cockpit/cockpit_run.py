@@ -9,6 +9,7 @@ import socket
 import warnings
 from collections.abc import Callable
 from contextlib import ExitStack, closing
+from functools import partial
 
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
@@ -36,27 +37,80 @@ from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.live_page import LivePage, look_from_the_front
 
 
-class Segments:
-    """Runs a scene, with the changes that are made on the cockpit's page."""
+class CockpitRun:
+    """The page of a run, and the holder of its handle; to be closed.
+
+    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
+    """
 
     def __init__(
         self,
-        haptic: HapticDiagram,
-        cockpit: Cockpit,
-        holding: Holding,
+        scene: Scene,
         meshcat: Meshcat,
+        listener: socket.socket,
+        *,
+        name: str,
+        device: str | None = None,
+        locked: str = "",
+        views: frozenset[str] = SHOWN_AT_FIRST,
     ):
-        """Begins with no tick."""
-        self._haptic = haptic
-        self._cockpit = cockpit
-        self._steering = cockpit.steering
-        self._holding = holding
+        """Opens page and device; works without a browser.
+
+        Args:
+            scene: The scene to run.
+            meshcat: The Meshcat that the page shows.
+            listener: The page's port, of `open_page_port`.
+            name: Name of the scene.
+            device: Address of the device that is held, as for `open_device`; None for
+                the simulated one.
+            locked: Reason why only the picture may be changed; empty if all may be.
+            views: The members of `PICTURE_VIEWS` that are shown at first.
+
+        Raises:
+            DeviceError, SceneError, TickLogError, OSError: See `open_device`.
+        """
+        site = find_device_site(scene)
+        p_WH = (site.X_WB @ site.X_BH).translation()
         self._meshcat = meshcat
-        # Whether the tool begins where the handle is.
-        self._is_restart = True
+        self._changes = SceneChanges(scene)
+        with ExitStack() as stack:
+            X_WC = look_from_the_front(p_WH, site.workspace_radius_m)
+            self._page = LivePage(meshcat, X_WC, listener)
+            stack.enter_context(closing(self._page))
+            advice = CouplingAdvice(scene)
+            self._holding = Holding(scene, meshcat, device, has_hand=advice.has_hand)
+            # Before the page, which tells of the last force.
+            stack.enter_context(closing(self._holding))
+            self._cockpit = Cockpit(
+                self._page,
+                self._changes,
+                self._holding,
+                PagePicture(meshcat, views),
+                advice,
+                name=name,
+                locked=locked,
+            )
+            self._steering = self._cockpit.steering
+            self._closing = stack.pop_all()
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return self._page.url
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it is now, with what the page has changed."""
+        return self._changes.scene
+
+    @property
+    def backend(self) -> DeviceBackend | None:
+        """The device that is held; None for the scene's simulated device."""
+        return self._holding.backend
 
     def run(
         self,
+        haptic: HapticDiagram,
         duration_s: float | None,
         *,
         pace: RealTimePacer,
@@ -65,45 +119,61 @@ class Segments:
         on_begin: Callable[[HapticDiagram], None],
         on_tick: Callable[[Context], None],
     ) -> HapticDiagram:
-        """Runs until the time is over, or Ctrl-C; see `CockpitRun.run`."""
+        """Runs a scene, with the changes that are made on the page.
+
+        Args:
+            haptic: Diagram of the scene, with `backend`.
+            duration_s: Simulated time, s; until Ctrl-C where None.
+            pace: Waits for each tick.
+            statistics: Statistics of the whole run.
+            energy: Whether to book energy, in a run that is locked.
+            on_begin: Called with each diagram before it runs.
+            on_tick: Called after every tick with the diagram's context.
+
+        Returns:
+            The diagram that ran last.
+
+        Raises:
+            RunError: The run failed, see `simulation.run`.
+        """
+        self._haptic, self._is_restart = haptic, True
+        run_some = partial(run, pace=pace, energy=energy, statistics=statistics)
         left_s, context = duration_s, None
-        # Round-off leaves less than a tick after the last whole one.
-        while left_s is None or left_s > 0.5 * self._haptic.period_s:
-            try:
+        try:
+            # Round-off leaves less than a tick after the last whole one.
+            while left_s is None or left_s > 0.5 * self._haptic.period_s:
                 self._cockpit.begin(
                     self._haptic, statistics, pace, is_restart=self._is_restart
                 )
                 on_begin(self._haptic)
-                change, last = self._run_one(
-                    left_s,
-                    context,
-                    pace=pace,
-                    statistics=statistics,
-                    energy=energy,
-                    on_tick=on_tick,
-                )
+                change, last = self._run_one(run_some, left_s, context, on_tick)
                 if change is None:
                     break
                 old = self._haptic
                 self._haptic, context = self._change(change, last)
                 if self._haptic is not old:
                     release_diagram(old)
-            except KeyboardInterrupt:
-                break
-            # Building was no stall of the loop.
-            pace.pause()
-            if duration_s is not None:
-                left_s = duration_s - statistics.ticks * self._haptic.period_s
+                # Building was no stall of the loop.
+                pace.pause()
+                if duration_s is not None:
+                    left_s = duration_s - statistics.ticks * self._haptic.period_s
+        except KeyboardInterrupt:
+            pass
+        except RunError as error:
+            self._holding.close()
+            self._page.close(f"The run {error}.")
+            raise
         return self._haptic
+
+    def close(self) -> None:
+        """Lets go of the handle at zero force, and ends the page."""
+        self._closing.close()
 
     def _run_one(
         self,
+        run_some: Callable[..., object],
         left_s: float | None,
         context: Context | None,
-        *,
-        pace: RealTimePacer,
-        statistics: RunStatistics,
-        energy: bool,
         on_tick: Callable[[Context], None],
     ) -> tuple[Change | None, Context | None]:
         """Runs a segment.
@@ -122,15 +192,7 @@ class Segments:
             return last is not None
 
         try:
-            run(
-                self._haptic,
-                left_s,
-                pace=pace,
-                energy=energy,
-                on_tick=end_tick,
-                context=context,
-                statistics=statistics,
-            )
+            run_some(self._haptic, left_s, on_tick=end_tick, context=context)
         except RunError as error:
             if not self._steering.fall_back(str(error)):
                 raise
@@ -189,127 +251,9 @@ class Segments:
             # The page tells it.
             warnings.simplefilter("ignore", SceneWarning)
             return BuildHapticDiagram(
-                self._steering.changes.scene,
+                self._changes.scene,
                 device=self._holding.backend,
                 meshcat=self._meshcat if old.visualizer is not None else None,
                 reuse=old,
                 X_WH=X_WH,
             )
-
-
-class CockpitRun:
-    """The page of a run, and the holder of its handle; to be closed.
-
-    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
-    """
-
-    def __init__(
-        self,
-        scene: Scene,
-        meshcat: Meshcat,
-        listener: socket.socket,
-        *,
-        name: str,
-        device: str | None = None,
-        locked: str = "",
-        views: frozenset[str] = SHOWN_AT_FIRST,
-    ):
-        """Opens page and device; works without a browser.
-
-        Args:
-            scene: The scene to run.
-            meshcat: The Meshcat that the page shows.
-            listener: The page's port, of `open_page_port`.
-            name: Name of the scene.
-            device: Address of the device that is held, as for `open_device`; None for
-                the simulated one.
-            locked: Reason why only the picture may be changed; empty if all may be.
-            views: The members of `PICTURE_VIEWS` that are shown at first.
-
-        Raises:
-            DeviceError, SceneError, TickLogError, OSError: See `open_device`.
-        """
-        site = find_device_site(scene)
-        p_WH = (site.X_WB @ site.X_BH).translation()
-        self._meshcat = meshcat
-        self._changes = SceneChanges(scene)
-        with ExitStack() as stack:
-            X_WC = look_from_the_front(p_WH, site.workspace_radius_m)
-            self._page = LivePage(meshcat, X_WC, listener)
-            stack.enter_context(closing(self._page))
-            advice = CouplingAdvice(scene)
-            self._holding = Holding(scene, meshcat, device, has_hand=advice.has_hand)
-            # Before the page, which tells of the last force.
-            stack.enter_context(closing(self._holding))
-            self._cockpit = Cockpit(
-                self._page,
-                self._changes,
-                self._holding,
-                PagePicture(meshcat, views),
-                advice,
-                name=name,
-                locked=locked,
-            )
-            self._closing = stack.pop_all()
-
-    @property
-    def url(self) -> str:
-        """Address of the page."""
-        return self._page.url
-
-    @property
-    def scene(self) -> Scene:
-        """The scene as it is now, with what the page has changed."""
-        return self._changes.scene
-
-    @property
-    def backend(self) -> DeviceBackend | None:
-        """The device that is held; None for the scene's simulated device."""
-        return self._holding.backend
-
-    def run(
-        self,
-        haptic: HapticDiagram,
-        duration_s: float | None,
-        *,
-        pace: RealTimePacer,
-        statistics: RunStatistics,
-        energy: bool,
-        on_begin: Callable[[HapticDiagram], None],
-        on_tick: Callable[[Context], None],
-    ) -> HapticDiagram:
-        """Runs a scene, with the changes that are made on the page.
-
-        Args:
-            haptic: Diagram of the scene, with `backend`.
-            duration_s: Simulated time, s; until Ctrl-C where None.
-            pace: Waits for each tick.
-            statistics: Statistics of the whole run.
-            energy: Whether to book energy, in a run that is locked.
-            on_begin: Called with each diagram before it runs.
-            on_tick: Called after every tick with the diagram's context.
-
-        Returns:
-            The diagram that ran last.
-
-        Raises:
-            RunError: The run failed, see `simulation.run`.
-        """
-        segments = Segments(haptic, self._cockpit, self._holding, self._meshcat)
-        try:
-            return segments.run(
-                duration_s,
-                pace=pace,
-                statistics=statistics,
-                energy=energy,
-                on_begin=on_begin,
-                on_tick=on_tick,
-            )
-        except RunError as error:
-            self._holding.close()
-            self._page.close(f"The run {error}.")
-            raise
-
-    def close(self) -> None:
-        """Lets go of the handle at zero force, and ends the page."""
-        self._closing.close()

@@ -4,15 +4,10 @@ from types import SimpleNamespace
 
 from box_scenes import TOOL_HALF_HEIGHT
 
-from drake_haptics.cockpit.cockpit import Cockpit
-from drake_haptics.cockpit.cockpit_run import Segments
-from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
-from drake_haptics.cockpit.steering import PagePicture
+from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.live_page import look_from_the_front
 
 # Waypoints over a plate, of a path that presses it.
@@ -50,6 +45,9 @@ class ScriptedPage:
             self.outlooks.append(describe())
         return self._script.get(len(self.times), [])
 
+    def close(self, why=""):
+        """Ends, with a reason if the run failed."""
+
     def tell(self, name, body):
         """Keeps a message."""
         {"hello": self.hellos, "state": self.states}[name].append(body)
@@ -80,21 +78,16 @@ class CockpitRig:
             "drake_haptics.cockpit.cockpit.monotonic",
             lambda: self.ticks * self.period_s,
         )
+        monkeypatch.setattr(
+            "drake_haptics.cockpit.cockpit_run.LivePage", lambda *_: self.page
+        )
         self.period_s = 1.0 / scene.device.rate_hz
         self.ticks = 0
-        self.changes = SceneChanges(scene)
-        advice = CouplingAdvice(scene)
-        self.holding = Holding(scene, meshcat, address, has_hand=advice.has_hand)
-        self.cockpit = Cockpit(
-            self.page,
-            self.changes,
-            self.holding,
-            PagePicture(meshcat, SHOWN_AT_FIRST),
-            advice,
-            name="test",
-            **options,
+        self._run = CockpitRun(
+            scene, meshcat, None, name="test", device=address, **options
         )
-        self._meshcat = meshcat
+        self.changes, self.cockpit = self._run._changes, self._run._cockpit
+        self.holding = self._run._holding
         self.haptics, self.seen = [], []
         self._watch = watch or (lambda haptic, root: root.get_time())
 
@@ -104,9 +97,8 @@ class CockpitRig:
             self.period_s, lambda: self.ticks * self.period_s, lambda _: None
         )
         self.statistics = RunStatistics(self.period_s, pace)
-        haptic = BuildHapticDiagram(self.changes.scene, device=self.holding.backend)
-        segments = Segments(haptic, self.cockpit, self.holding, self._meshcat)
-        self.last = segments.run(
+        self.last = self._run.run(
+            BuildHapticDiagram(self._run.scene, device=self._run.backend),
             duration_s,
             pace=pace,
             statistics=self.statistics,
