@@ -46,6 +46,7 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
     """Returns sentences about what is probably not intended in a scene."""
     return [
         *_question_sizes(haptic),
+        *_question_open(haptic),
         *question_tolerance(
             calc_first_touch(haptic.scene.contact),
             "the tool",
@@ -87,6 +88,24 @@ def _question_size(
         return f"{size}; is its scale ({item.scale:g}) right?"
     factor = METERS_PER_UNIT[unit]
     return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
+
+
+def _question_open(haptic: HapticDiagram) -> list[str]:
+    """Asks about meshes that were probably meant to be solids, but are open."""
+    scene = haptic.scene
+    parts = [("tool", scene.tool, haptic.tool)] + [
+        (f"environment[{i}]", item, part)
+        for i, (item, part) in enumerate(
+            zip(scene.environment, haptic.environment, strict=True)
+        )
+    ]
+    return [
+        f"{key}: {Path(item.mesh).name} is open: {report.one_sided_triangles:,} of"
+        f" {report.triangles:,} triangles bound no solid, so that a tool can get behind"
+        " them, and their pieces are many and flat; drake-haptics check lists the holes"
+        for key, item, part in parts
+        if (report := part.mesh.report).one_sided_triangles
+    ]
 
 
 def _question_clearance(haptic: HapticDiagram) -> list[str]:

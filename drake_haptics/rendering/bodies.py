@@ -124,8 +124,9 @@ def make_rendered_bodies(
         )
     if not environment:
         raise ValueError(
-            f"environment: nothing in the plant has a shape that {tool.name()!r} can"
-            " meet"
+            f"environment: there is no body that {tool.name()!r} can meet, beside those"
+            " that it meets in earlier renderings; give another body a shape with the"
+            f" role {role.name[1:].lower()}"
         )
     indices = [body.index() for body in environment]
     attached = _find_attached(plant, tool)

@@ -193,21 +193,26 @@ class ContactClustering(DifferentiableSystem):
         rule = context.get_abstract_parameter(self._rule).get_value()
         contacts = self._eval_contacts(context)
         if self._warns_deep:
-            self.warn_of_depth(contacts.least_distance, rule.tolerance_m)
+            self.warn_of_depth(context, contacts.least_distance, rule.tolerance_m)
         clusters.set_value(_cluster(contacts, rule.tolerance_m, rule.delta_m))
 
-    def warn_of_depth(self, least_distance_m: float, tolerance_m: float) -> None:
+    def warn_of_depth(
+        self, context: Context, least_distance_m: float, tolerance_m: float
+    ) -> None:
         """Warns of a contact that is deeper than ten tolerances, the first time.
 
         Args:
+            context: Context of any system of the same diagram, for the time.
             least_distance_m: Signed distance of the deepest contact, m.
             tolerance_m: Distance below which contacts push, m.
         """
         question = question_depth(-least_distance_m, tolerance_m)
         if self._warns_deep and question:
             self._warns_deep = False
+            rendering = self.GetSystemPathname().split("::")[-2]
+            sentence = f"{rendering!r} at {context.get_time():.4g} s: {question}"
             # Drake calls this, so that the user's line is not known.
-            warnings.warn(question, SceneWarning, stacklevel=1)
+            warnings.warn(sentence, SceneWarning, stacklevel=1)
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
         assert self._load_shedding is not None

@@ -135,7 +135,7 @@ class PenaltyForce(DifferentiableSystem):
         damping_Ns_per_m: Sequence[float],
         *,
         enable_chain: bool = False,
-        warn_of_depth: Callable[[float, float], None] | None = None,
+        warn_of_depth: Callable[[Context, float, float], None] | None = None,
     ):
         """Constructs the system.
 
@@ -284,7 +284,7 @@ class PenaltyForce(DifferentiableSystem):
             chain.find_force(self._eval_X_WT(context), self._eval_V_WT(context))
         )
         if self._warn_of_depth is not None:
-            self._warn_of_depth(*chain.deepest)
+            self._warn_of_depth(context, *chain.deepest)
 
     def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
         wrench = self._eval_wrench(context)

@@ -48,6 +48,15 @@ def test_a_scale_too_small_is_asked_for(tmp_path):
     assert "20 µm wide" in question and question.endswith("tool.scale: 1")
 
 
+def test_a_mesh_with_a_hole_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    cube = trimesh.load(scene.tool.mesh)
+    cube.update_faces(np.arange(len(cube.faces)) > 0)
+    scene.tool.mesh = write(tmp_path, "torn", cube)
+    (question,) = ask(scene)
+    assert question.startswith("tool: torn.obj is open: 11 of 11 triangles bound no")
+
+
 def test_a_tolerance_in_millimeters_is_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     scene.contact.tolerance_m = 2.0

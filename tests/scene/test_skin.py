@@ -78,6 +78,8 @@ def test_a_plant_says_once_that_a_tool_is_deep_in_a_block():
         advance_plant(DEEP)
     (sentence,) = said
     assert "15 mm deep, 15 times contact.tolerance_m (1 mm)" in sentence
+    # Of several renderings it says which one, and since when.
+    assert sentence.startswith("'haptic_rendering' at 0 s: ")
 
 
 def test_a_plant_says_so_where_it_looks_for_contacts_as_far_as_braking_needs():
