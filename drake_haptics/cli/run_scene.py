@@ -200,8 +200,9 @@ def run_scene(
     if session.error is not None:
         raise _UnstableError(str(session.error)) from session.error
     if (fault := session.figures.get("device", {}).get("fault", "NONE")) != "NONE":
+        driver = " is its driver still running?" if fault == "STALE" else ""
         raise _FaultError(
-            f"the run ended with its device at fault ({describe_fault(fault)}):"
+            f"the run ended with its device at fault ({describe_fault(fault)}):{driver}"
             " docs/connect-a-device.md says what each fault means"
         )
 
