@@ -10,17 +10,16 @@ import functools
 import hashlib
 import json
 import os
+import pickle
 import sys
-import types
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, is_dataclass
-from enum import Enum
 from importlib.metadata import version
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any
 
-from drake_haptics.analysis.jobs.exact_json import to_exact_json
+import joblib
 
 PACKAGE_VERSION = version("drake_haptics")
 
@@ -43,12 +42,19 @@ class StudyFunction:
         """Identifies a top-level function, a partial of one, or a callable dataclass.
 
         Raises:
-            ValueError: The function is of another kind, or something other than data is
-                bound to it.
+            ValueError: The function is of another kind, or something that does not
+                pickle is bound to it.
         """
-        described = json.dumps([PACKAGE_VERSION, _describe(function, "function")])
-        digest = hashlib.sha256(described.encode()).hexdigest()[:16]
-        return StudyFunction(_name_whole(function), digest)
+        name = _name_whole(function)
+        try:
+            digest = joblib.hash([PACKAGE_VERSION, name, function])
+        except (pickle.PicklingError, TypeError) as error:
+            raise ValueError(
+                f"a store cannot tell {name} from others: {error}. Bind data, paths,"
+                " dataclasses and functions of the top level of a module, and build the"
+                " rest inside the function"
+            ) from error
+        return StudyFunction(name, digest)
 
     def make_key(self, task: str) -> str:
         """Returns the hash of this function with a task (exact JSON), hex."""
@@ -56,74 +62,40 @@ class StudyFunction:
 
 
 def _name_whole(function: Any) -> str:
-    """Returns the name, with the names of functions bound to it in brackets."""
-    if _has_name(function):
-        return _name(function)
+    """Returns the name, with the names of functions bound to it in brackets.
+
+    Raises:
+        ValueError: The function has no name.
+    """
     if isinstance(function, functools.partial):
         name = _name_whole(function.func)
         bound = [*function.args, *function.keywords.values()]
-    else:
+    elif is_dataclass(function) and not isinstance(function, type):
         name = _name(type(function))
         bound = [getattr(function, field.name) for field in fields(function)]
+    else:
+        return _name(function)
     inner = [_name_whole(value) for value in bound if callable(value)]
     return f"{name}({', '.join(inner)})" if inner else name
 
 
-def _has_name(value: Any) -> bool:
-    if isinstance(value, types.BuiltinFunctionType):
-        return value.__module__ is not None  # not a method of an object
-    return isinstance(value, (types.FunctionType, type))
+def _name(function: Any) -> str:
+    """Returns module and qualified name; a program is known by its file.
 
-
-def _name(value: Any) -> str:
-    """Returns module and qualified name; a program is known by its file."""
-    module = value.__module__
+    Raises:
+        ValueError: The function is not of the top level of a module.
+    """
+    module = getattr(function, "__module__", None)
+    name = getattr(function, "__qualname__", "<object>")
+    if module is None or "<" in name:  # <lambda>, <locals>
+        raise ValueError(
+            f"a store needs functions of the top level of a module, whose name says"
+            f" what they are: {function!r} is not one"
+        )
     if module == "__main__":
         program = getattr(sys.modules["__main__"], "__file__", None)
         module = Path(program).name if program else module
-    return f"{module}.{value.__qualname__}"
-
-
-def _describe(value: Any, where: str) -> Any:
-    """Returns JSON data that two values share only if they are the same."""
-    if isinstance(value, functools.partial):
-        return {
-            "partial": _describe(value.func, where),
-            "args": _describe(value.args, f"{where}.args"),
-            "keywords": _describe(value.keywords, f"{where}.keywords"),
-        }
-    if _has_name(value):
-        if "<" in value.__qualname__:  # <lambda>, <locals>
-            raise ValueError(
-                f"{where} is {value.__qualname__}: a store needs functions of the top"
-                " level of a module, whose name says what they are"
-            )
-        return {"name": _name(value)}
-    if is_dataclass(value):
-        of = {
-            field.name: _describe(
-                getattr(value, field.name), f"{where or 'function'}.{field.name}"
-            )
-            for field in fields(value)
-        }
-        return {"dataclass": _name(type(value)), "fields": of}
-    if isinstance(value, PurePath):
-        return {"path": str(value)}
-    if isinstance(value, Enum):
-        return {"enum": _name(type(value)), "member": value.name}
-    if isinstance(value, (list, tuple)):
-        return [_describe(v, f"{where}[{i}]") for i, v in enumerate(value)]
-    if isinstance(value, dict) and all(isinstance(key, str) for key in value):
-        return {
-            "dict": [[k, _describe(v, f"{where}[{k!r}]")] for k, v in value.items()]
-        }
-    try:
-        return {"value": to_exact_json(value)}
-    except ValueError as error:
-        raise ValueError(
-            f"a store cannot tell one {where} from another: {error}. Bind data, paths,"
-            " dataclasses and functions, and build the rest inside the function"
-        ) from error
+    return f"{module}.{name}"
 
 
 # Every line begins so; a file without it belongs to somebody else.

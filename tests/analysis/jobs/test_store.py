@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import json
+import math
+import threading
 import warnings
+from pathlib import Path
 
+import numpy as np
 import pytest
 from study_functions import (
     BrokenPool,
@@ -17,7 +22,7 @@ from study_functions import (
 )
 
 from drake_haptics.analysis.jobs.pool import SerialExecutor
-from drake_haptics.analysis.jobs.store import StudyWarning
+from drake_haptics.analysis.jobs.store import StudyFunction, StudyWarning
 from drake_haptics.analysis.jobs.study import run_study
 
 SERIAL = SerialExecutor()
@@ -115,6 +120,26 @@ def test_a_store_of_other_bound_values_is_refused(tmp_path):
         run_study(other, [1], executor=SERIAL, store=store)
 
 
+@pytest.mark.parametrize(
+    ("bound", "other"),
+    [
+        (1, 1.0),
+        (1, True),
+        (0.0, -0.0),
+        (1.0, math.nextafter(1.0, 2.0)),
+        ("x", Path("x")),
+        (np.zeros(2), np.zeros(2, dtype=np.float32)),
+        (np.zeros((2, 1)), np.zeros((1, 2))),
+        (square, add_three_scaled),
+    ],
+)
+def test_bound_values_are_told_apart_to_the_bit(bound, other):
+    def digest(value):
+        return StudyFunction.of(functools.partial(add_three_scaled.func, value)).digest
+
+    assert digest(bound) == digest(copy.deepcopy(bound)) != digest(other)
+
+
 def test_a_store_of_another_version_is_refused(tmp_path, monkeypatch):
     store = tmp_path / "store"
     name = "drake_haptics.analysis.jobs.store.PACKAGE_VERSION"
@@ -146,8 +171,8 @@ def test_a_store_in_use_is_refused(tmp_path):
 
 @pytest.mark.parametrize(
     "function",
-    [lambda task: task, functools.partial(square, object()), [].append],
-    ids=["lambda", "object bound", "method"],
+    [lambda task: task, functools.partial(square, threading.Lock()), [].append],
+    ids=["lambda", "lock bound", "method"],
 )
 def test_a_store_needs_a_function_that_a_name_tells(tmp_path, function):
     with pytest.raises(ValueError, match="a store "):
