@@ -43,10 +43,12 @@ class Journal:
     Args:
         path: Path of the file.
         seconds: Duration of a task, s.
+        gate: Path of a file for which all tasks but 0 and 1 wait, if any.
     """
 
     path: str
     seconds: float = 0.0
+    gate: str = ""
 
     def __call__(self, task):
         """Returns the task and the file's name."""
@@ -62,6 +64,8 @@ class Journal:
             os._exit(1)
         if task == "wait":
             time.sleep(60.0)
+        while self.gate and task > 1 and not os.path.exists(self.gate):
+            time.sleep(1e-3)
         time.sleep(self.seconds)
         return [task, os.path.basename(self.path)]
 

@@ -111,9 +111,11 @@ def test_an_interrupted_study_takes_its_tasks_back(client, tmp_path):
         if done == 2:
             raise KeyboardInterrupt
 
-    journal, executor = Journal(str(tmp_path / "journal"), 0.01), client.get_executor()
+    gate, executor = tmp_path / "gate", client.get_executor()
+    journal = Journal(str(tmp_path / "journal"), gate=str(gate))
     with pytest.raises(KeyboardInterrupt, match=r"Stopped. 2 of 300 tasks are done"):
         run_study(journal, range(300), executor=executor, progress=interrupt)
+    gate.touch()
     # The workers come to later tasks when they are through with earlier ones.
     run_study(wait_and_tell_process, [0.02, 0.03], executor=executor)
     assert len(journal.read()) < 150
