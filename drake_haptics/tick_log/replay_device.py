@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from drake_haptics._core import FrameChange
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -39,11 +41,9 @@ class ReplayDevice(DeviceBackend):
             raise DeviceError("the log has no first tick to start from; record again")
         self._times_s = log.rows["time_s"][:ticks]
         self._buttons = log.rows["buttons"][:ticks]
-        self._X_BH, self._V_BH = _express_in_base(
-            np.array(log.header.X_WB),
-            log.rows["X_WH"][:ticks],
-            log.rows["V_WH"][:ticks],
-        )
+        self._X_WH, self._V_WH = log.rows["X_WH"], log.rows["V_WH"]
+        X_WB = vector_to_pose(np.array(log.header.X_WB))
+        self._to_base = FrameChange(pose_to_vector(X_WB.inverse()))
         self._tick = 0
         self._gate = GateState.IDLE
 
@@ -60,11 +60,12 @@ class ReplayDevice(DeviceBackend):
     def read(self) -> DeviceReading:
         """Returns the recorded handle at the present tick."""
         tick = self._tick
+        motion = self._to_base.change_motion(self._X_WH[tick], self._V_WH[tick])
         return DeviceReading(
             sequence=tick,
             time_s=float(self._times_s[tick]),
-            X_BH=self._X_BH[tick],
-            V_BH=self._V_BH[tick],
+            X_BH=motion[:7],
+            V_BH=motion[7:],
             F_Ho_B=np.zeros(6),
             buttons=int(self._buttons[tick]),
             gate=self._gate,
@@ -83,22 +84,3 @@ class ReplayDevice(DeviceBackend):
     def close(self) -> None:
         """Stops where it is."""
         self._gate = GateState.IDLE
-
-
-def _express_in_base(
-    X_WB: np.ndarray, X_WH: np.ndarray, V_WH: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Returns X_BH (n, 7) and V_BH (n, 6)."""
-    w, x, y, z = X_WB[:4]
-    # The product q_BW q_WH is linear in q_WH.
-    left = np.array([[w, x, y, z], [-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]])
-    R_BW = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
-            [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
-            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-    X_BH = np.hstack([X_WH[:, :4] @ left.T, (X_WH[:, 4:] - X_WB[4:]) @ R_BW.T])
-    V_BH = np.hstack([V_WH[:, :3] @ R_BW.T, V_WH[:, 3:] @ R_BW.T])
-    return X_BH, V_BH
