@@ -170,26 +170,10 @@ def calc_exact_alpha(beta: float, delay_samples: int) -> float:
     return calc_boundary_point(angle, delay_samples).alpha
 
 
-def make_loop_polynomial(alpha: float, beta: float, delay_samples: int) -> np.ndarray:
-    """Returns 2 z^(d+1) (z - 1)² + (α z + β (z - 1)) (z + 1), highest power first.
-
-    Raises:
-        ValueError: The delay is negative or no whole number.
-    """
-    _check_delay(delay_samples)
-    mass = np.zeros(delay_samples + 4)
-    mass[:3] = 2.0, -4.0, 2.0
-    return np.polyadd(mass, np.polymul([alpha + beta, -beta], [1.0, 1.0]))
-
-
 def _end_of_angles(delay_samples: int) -> float:
     """Returns the θ at which the boundary comes back to α = 0."""
-    _check_delay(delay_samples)
-    return math.pi / (2.0 * (delay_samples + 1))
-
-
-def _check_delay(delay_samples: int) -> None:
     if delay_samples < 0 or delay_samples != int(delay_samples):
         raise ValueError(
             f"delay_samples must be a whole number, at least 0, is {delay_samples}"
         )
+    return math.pi / (2.0 * (delay_samples + 1))

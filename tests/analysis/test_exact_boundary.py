@@ -2,23 +2,19 @@
 
 import numpy as np
 import pytest
+from loop_polynomial import make_loop_polynomial
 
 from drake_haptics.analysis.exact_boundary import (
     calc_boundary_peak,
     calc_boundary_point,
     calc_exact_alpha,
     calc_exact_boundary,
-    make_loop_polynomial,
 )
 from drake_haptics.bounds.sampled_spring import calc_sampled_stiffness
 
 
 def calc_largest_root(alpha, beta, delay):
-    """2 z^(d+1) (z-1)² + (α z + β (z-1)) (z+1), multiplied out by hand."""
-    coefficients = np.zeros(delay + 4)
-    coefficients[:3] = 2, -4, 2
-    coefficients[-3:] += alpha + beta, alpha, -beta
-    return np.abs(np.roots(coefficients)).max()
+    return np.abs(np.roots(make_loop_polynomial(alpha, beta, delay))).max()
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 3, 4, 9])

@@ -7,12 +7,9 @@ figures are those of an earlier study by eigenvalues alone.
 
 import numpy as np
 import pytest
+from loop_polynomial import make_loop_polynomial
 
-from drake_haptics.analysis.exact_boundary import (
-    calc_boundary_peak,
-    calc_exact_alpha,
-    make_loop_polynomial,
-)
+from drake_haptics.analysis.exact_boundary import calc_boundary_peak, calc_exact_alpha
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 
