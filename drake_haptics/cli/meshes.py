@@ -20,6 +20,7 @@ from drake_haptics.cli.options import (
     unit_options,
     write_json,
 )
+from drake_haptics.common.one_line import count
 from drake_haptics.geometry.decomposition.approximate import check_error
 from drake_haptics.geometry.decomposition.decompose import (
     METHODS,
@@ -150,10 +151,9 @@ def _print_report(result: Decomposition) -> None:
             console.print(f"  Question: {finding.message}: {finding.action}")
     unclean = len(result.mesh.report.unclean)
     if unclean:
-        defects = "1 defect" if unclean == 1 else f"{unclean} defects"
         console.print(
-            f"  The mesh has {defects}, repaired or left; drake-haptics check names"
-            f" {'it' if unclean == 1 else 'them'}."
+            f"  The mesh has {count(unclean, 'defect')}, repaired or left;"
+            f" drake-haptics check names {'it' if unclean == 1 else 'them'}."
         )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from drake_haptics.common.one_line import count
 from drake_haptics.evaluation.paper.evaluation import Analysis
 from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass
 from drake_haptics.evaluation.paper.profile import ProfileFigures
@@ -59,6 +60,11 @@ class Statement:
     text: str
 
 
+def _compare(is_like: bool, text: str) -> Statement:
+    """Returns a statement that agrees with the paper, or differs from it."""
+    return Statement("agrees" if is_like else "differs", text)
+
+
 def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
     """Returns the statements on Table 1."""
     found = [row for row in rows if row.source]
@@ -66,13 +72,11 @@ def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
     more = [row for row in found if row.pieces > row.paper_pieces]
     statements = []
     if fewer:
-        statements.append(
-            Statement("better", f"No more pieces than the paper: {_list_rows(fewer)}.")
-        )
+        text = f"No more pieces than the paper: {_list_rows(fewer)}."
+        statements.append(Statement("better", text))
     if more:
-        statements.append(
-            Statement("differs", f"More pieces than the paper: {_list_rows(more)}.")
-        )
+        text = f"More pieces than the paper: {_list_rows(more)}."
+        statements.append(Statement("differs", text))
     for row in rows:
         if not row.source:
             text = f"{row.model}: there is no such shape; --meshes FOLDER names one."
@@ -97,25 +101,15 @@ def judge_run(
         is_cut_short: Whether only the beginning of the path was run: largest values on
             the whole path are not measured then.
     """
-    at_most = []
-    if figures.figure == "11-(c)":
-        at_most.append(_judge_room(figures))
-    if figures.figure == "11-(a)":
-        at_most.append(_judge_contacts(figures))
-    if is_cut_short:
-        at_most = [_leave_open(statement) for statement in at_most]
-    return [
-        _judge_rate(figures),
-        *at_most,
-        *_judge_overhead(figures),
-        *_judge_growth(figures),
-    ]
-
-
-def _leave_open(statement: Statement) -> Statement:
-    """Returns a statement that the beginning of a path cannot decide."""
-    text = f"{statement.text} (So far: the path was cut short.)"
-    return Statement("not measured", text)
+    judge_most = {"11-(a)": _judge_contacts, "11-(c)": _judge_room}
+    statements = [_judge_rate(figures)]
+    if figures.figure in judge_most:
+        most = judge_most[figures.figure](figures)
+        if is_cut_short:
+            text = f"{most.text} (So far: the path was cut short.)"
+            most = Statement("not measured", text)
+        statements.append(most)
+    return [*statements, *_judge_overhead(figures), *_judge_growth(figures)]
 
 
 def _judge_rate(figures: ProfileFigures) -> Statement:
@@ -145,7 +139,7 @@ def _judge_contacts(figures: ProfileFigures) -> Statement:
     most = figures.most_contacts
     share = most / CUP_SPOON_CONTACTS
     text = f"Up to {most} contacts at a time; the paper has up to {CUP_SPOON_CONTACTS}."
-    return Statement("agrees" if 0.5 <= share <= 2.0 else "differs", text)
+    return _compare(0.5 <= share <= 2.0, text)
 
 
 def _judge_room(figures: ProfileFigures) -> Statement:
@@ -155,8 +149,8 @@ def _judge_room(figures: ProfileFigures) -> Statement:
         and abs(triangles / ROOM_TRIANGLES - 1.0) <= _NEAR
         and figures.most_touched == TOUCHED_OBJECTS
     )
-    return Statement(
-        "agrees" if is_near else "differs",
+    return _compare(
+        is_near,
         f"{figures.objects} objects of {triangles:,} triangles, of which the tool"
         f" touches {figures.most_touched} at once, with up to {figures.most_contacts}"
         f" contacts; those it ever touches have {figures.touched_triangles:,}"
@@ -175,7 +169,7 @@ def _judge_overhead(figures: ProfileFigures) -> list[Statement]:
         f" {'more' if change >= 0.0 else 'less'} where objects penetrate; the paper: a"
         " very small overhead."
     )
-    return [Statement("agrees" if overhead <= _SMALL_OVERHEAD else "differs", text)]
+    return [_compare(overhead <= _SMALL_OVERHEAD, text)]
 
 
 def _judge_growth(figures: ProfileFigures) -> list[Statement]:
@@ -187,9 +181,9 @@ def _judge_growth(figures: ProfileFigures) -> list[Statement]:
         f"The query's time grows with the power {exponent:.2f} of the number of"
         " contacts; the paper: roughly in proportion."
     )
-    if exponent > _PROPORTIONAL[1]:
-        return [Statement("differs", text)]
-    return [Statement("agrees" if exponent >= _PROPORTIONAL[0] else "better", text)]
+    if exponent < _PROPORTIONAL[0]:
+        return [Statement("better", text)]
+    return [_compare(exponent <= _PROPORTIONAL[1], text)]
 
 
 def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
@@ -198,10 +192,9 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
     for passed in passes:
         ours = passed.smoothness[OURS]
         on = f"on a sphere of {passed.triangles:,} triangles"
-        crosses = ours.crossing_step_m <= ours.true_distance_step_m
         statements.append(
-            Statement(
-                "agrees" if crosses else "differs",
+            _compare(
+                ours.crossing_step_m <= ours.true_distance_step_m,
                 f"Distance {on}: where the pen goes in or out, a tick changes it by"
                 f" {1e6 * ours.crossing_step_m:.2f} µm beyond the motion, anywhere by"
                 f" {1e6 * ours.distance_step_m:.2f} µm at most; the motion itself by"
@@ -211,8 +204,8 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
         smooth = ours.normal_step_deg <= _SAME * passed.exact.normal_step_deg
         bound = "no more than" if smooth else "more than"
         statements.append(
-            Statement(
-                "agrees" if smooth else "differs",
+            _compare(
+                smooth,
                 f"Normal {on}: a tick turns it by {ours.normal_step_deg:.2f}° at most"
                 f" beyond the motion, {bound} the exact depth of the two polyhedra"
                 f" ({passed.exact.normal_step_deg:.2f}°), whose faces meet at up to"
@@ -250,8 +243,8 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
     rows = depths.rows
     times = 1e6 * DEPTH_SECONDS / depths.typical_us
     statements = [
-        Statement(
-            "agrees" if growth.exponent <= _CONSTANT_EXPONENT else "differs",
+        _compare(
+            growth.exponent <= _CONSTANT_EXPONENT,
             f"Depth over triangles: from {rows[0].triangles} to"
             f" {rows[-1].triangles:,} the {unit} grow with the power"
             # A power that rounds to zero has no sign.
@@ -263,8 +256,8 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
             f"One depth: {depths.typical_us:.2f} µs, {times:,.0f} times less than the"
             " paper's 0.1 ms.",
         ),
-        Statement(
-            "agrees" if line.r_squared >= _LINEAR_R_SQUARED else "differs",
+        _compare(
+            line.r_squared >= _LINEAR_R_SQUARED,
             f"Query over penetrating pairs: {line.slope:.2f} µs for each, a straight"
             f" line with R² = {line.r_squared:.3f}; the paper: linear.",
         ),
@@ -272,17 +265,13 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
     return statements + [_judge_force(forces) for forces in analysis.forces]
 
 
-def _count(forces: int) -> str:
-    return f"{forces} force{'s' if forces != 1 else ''}"
-
-
 def _judge_force(forces: ForceScaling) -> Statement:
     exponent = forces.time_growth.exponent
     whose = "the paper's clusters" if forces.method == "octree" else "shared stiffness"
     growth = "sub-linear" if exponent < 1.0 else "not sub-linear"
-    return Statement(
-        "agrees" if exponent < 1.0 else "differs",
-        f"Force over contacts, {whose}: {_count(forces.forces[-1])} for"
+    return _compare(
+        exponent < 1.0,
+        f"Force over contacts, {whose}: {count(forces.forces[-1], 'force')} for"
         f" {forces.contacts[-1]} contacts, and a time that grows with the power"
         f" {exponent:.2f} of them from {FEWEST_FITTED} on: {growth}; the paper:"
         " sub-linear.",
