@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
-from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.evaluation.accuracy.figures import Errors
 from drake_haptics.evaluation.accuracy.recorded_motion import (
     RecordedMotion,
@@ -40,7 +41,7 @@ def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
         contact's tolerance.
     """
     tolerance_m = haptic.scene.contact.tolerance_m
-    R_WT = np.array([vector_to_pose(X).rotation().matrix() for X in X_WT])
+    R_WT = _read_rotations(X_WT).as_matrix()
     best = np.full(len(X_WT), np.inf)
     objects = [
         (piece, item.pose.to_rigid_transform())
@@ -140,12 +141,14 @@ def shift_wrench(F_To_W: np.ndarray, X_WT: np.ndarray, p_TP: np.ndarray) -> np.n
     Returns:
         (n, 6) [τ; f] at P: the force is the same, τ_P = τ - p × f.
     """
-    w, xyz = X_WT[:, :1], X_WT[:, 1:4]
-    # A unit quaternion turns p to p + 2 w (q × p) + 2 q × (q × p).
-    turned = np.cross(xyz, p_TP)
-    p_TP_W = p_TP + 2.0 * (w * turned + np.cross(xyz, turned))
-    force = F_To_W[:, 3:]
-    return np.hstack([F_To_W[:, :3] - np.cross(p_TP_W, force), force])
+    torque, force = np.split(F_To_W, 2, axis=1)
+    p_TP_W = _read_rotations(X_WT).apply(p_TP)
+    return np.hstack([torque - np.cross(p_TP_W, force), force])
+
+
+def _read_rotations(X_WT: np.ndarray) -> Rotation:
+    """Returns the rotations of poses (n, 7)."""
+    return Rotation.from_quat(np.roll(X_WT[:, :4], -1, axis=1))
 
 
 def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Errors:

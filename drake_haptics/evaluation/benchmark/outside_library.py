@@ -18,6 +18,7 @@ from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.benchmark.pair_library import (
     PairAnswers,
     PairLibrary,
+    ask_each,
 )
 from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.benchmark.scenes import SceneAnswers, SceneProblem
@@ -125,15 +126,15 @@ class _OutsidePair:
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
         """See `PairQuery.run`."""
-        query = self._make()
-        distance, normals, seconds = np.empty(len(X_WA)), [], np.empty(len(X_WA))
-        for k, X in enumerate(X_WA):
+        query = self._make().query
+
+        def ask(X: np.ndarray) -> tuple[float, np.ndarray, float]:
             start = time.perf_counter()
-            contact = query.query(X)
-            seconds[k] = time.perf_counter() - start
-            distance[k] = contact.distance
-            normals.append(contact.nhat_BA_W)
-        return PairAnswers(distance, np.array(normals), seconds)
+            contact = query(X)
+            time_s = time.perf_counter() - start
+            return contact.distance, contact.nhat_BA_W, time_s
+
+        return ask_each(X_WA, ask)
 
 
 class PiecePairs:

@@ -14,7 +14,7 @@ from pydrake.multibody.plant import (
 )
 from pydrake.multibody.tree import RigidBody, SpatialInertia
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
 from drake_haptics.evaluation.benchmark.loop.simulated_ticks import (
@@ -66,11 +66,6 @@ class PlantLoop(SimulatedLoop):
                 X_HT=problem.X_HT,
             )
         self._diagram = builder.Build()
-
-    @property
-    def diagram(self) -> Diagram:
-        """The diagram that is run."""
-        return self._diagram
 
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
