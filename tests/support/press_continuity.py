@@ -32,7 +32,6 @@ class Jumps:
         force_alone: Ticks with such a force on which neither of the above happened, nor
             a normal of the deepest contact turned: the clustering's doing.
         largest_N: The largest change of the force beyond what the motion explains.
-        worst_tick: Tick of the largest change.
     """
 
     ticks: int = 0
@@ -41,14 +40,13 @@ class Jumps:
     force: int = 0
     force_alone: int = 0
     largest_N: float = 0.0
-    worst_tick: int = -1
 
 
 def count_jumps(ticks: list[Tick], tool: PressTool, gains: Gains) -> Jumps:
     """Counts the jumps of a run, from the first tick of `ticks` to the last."""
     radius_m = float(np.linalg.norm(tool.mesh.vertices, axis=1).max())
     jumps = Jumps()
-    for i, (last, now) in enumerate(pairwise(ticks), 1):
+    for last, now in pairwise(ticks):
         if not (len(last.contacts) and len(now.contacts)):
             continue
         jumps.ticks += 1
@@ -63,8 +61,7 @@ def count_jumps(ticks: list[Tick], tool: PressTool, gains: Gains) -> Jumps:
         explained_N += gains.damping_Ns_per_m * (speed + _speed(last, radius_m))
         change_N = float(np.linalg.norm((now.F_contact_W - last.F_contact_W)[3:]))
         excess_N = change_N - _EXPLAINED_TIMES * explained_N
-        if excess_N > jumps.largest_N:
-            jumps.largest_N, jumps.worst_tick = excess_N, i
+        jumps.largest_N = max(jumps.largest_N, excess_N)
         if excess_N > _UNFELT_N:
             jumps.force += 1
             jumps.force_alone += not (jumped or turned or _deepest_turned(last, now))
