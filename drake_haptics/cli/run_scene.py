@@ -66,8 +66,8 @@ def describe_skin(speed_m_per_s: float) -> str:
 _MESH_OPTIONS = {
     "tool.mesh": "--tool",
     "tool.scale": "--tool-scale",
-    "environment[0].mesh": "--environment",
-    "environment[0].scale": "--environment-scale",
+    "environment.mesh": "--environment",
+    "environment.scale": "--environment-scale",
 }
 
 
@@ -110,7 +110,7 @@ def _refuse_settings_of_meshes(settings: Sequence[str]) -> None:
     """Refuses to change the meshes for which the path of the hand is made."""
     for setting in settings:
         key = setting.partition("=")[0]
-        if option := _MESH_OPTIONS.get(key):
+        if option := _MESH_OPTIONS.get(key.replace("[0]", "")):
             raise HapticsError(
                 f"--set {key}: give {option} instead; the hand's path is made for it"
             )

@@ -114,12 +114,19 @@ def test_accuracy_is_that_of_the_changed_scene_and_its_page_says_so(
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["sphere_pen", "--set", "contact.depht=global"], "did you mean 'depth'"),
+        (["sphere_pen", "--set", "contact.depht=x"], "did you mean 'contact.depth'"),
         (["sphere_pen", "--set", "tool.mesh=pin.obj"], "did you mean 'pen.obj'"),
         (["sphere_pen", "--set", "hand.grip"], "KEY=VALUE"),
         (
             ["--tool", "pen.obj", "--environment", "torus.obj", "--set", "tool.scale="],
             "give --tool-scale instead",
+        ),
+        *(
+            (
+                ["--tool", "pen.obj", "--environment", "torus.obj", "--set", f"{key}="],
+                "give --environment instead",
+            )
+            for key in ("environment.mesh", "environment[0].mesh")
         ),
         (["copy.yaml", "--write-scene", "copy.yaml"], "is the scene that runs"),
         (["sphere_pen", "--write-scene", "a", "--log", "a"], "its own file"),
