@@ -115,8 +115,9 @@ def _parse_header(facts: object) -> TickLogHeader:
         raise ValueError("a version, a scene or a mesh is not text")
     if not all(isinstance(x, float) and math.isfinite(x) for x in numbers):
         raise ValueError("a number is not a finite one with a decimal point")
-    if len(header.X_WB) != 7 or header.period_s <= 0.0:
-        raise ValueError("X_WB has 7 numbers, and period_s is positive")
+    is_pose = len(header.X_WB) == 7 and any(header.X_WB[:4])
+    if not is_pose or header.period_s <= 0.0:
+        raise ValueError("X_WB is a pose of 7 numbers, and period_s is positive")
     return header
 
 
