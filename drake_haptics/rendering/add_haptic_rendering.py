@@ -15,6 +15,7 @@ from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import DiagramBuilder, OutputPort
 
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.rendering.bodies import (
     RenderedBody,
     exclude_own_contact,
@@ -188,12 +189,14 @@ def AddHapticRendering(
         period_s=period_s,
     )
     builder.AddNamedSystem(name, rendering)
-    builder.Connect(
-        plant.get_body_poses_output_port(), rendering.GetInputPort("body_poses")
-    )
-    builder.Connect(
-        plant.get_body_spatial_velocities_output_port(),
-        rendering.GetInputPort("body_spatial_velocities"),
+    connect_by_name(
+        builder,
+        rendering,
+        {
+            "body_poses": plant.get_body_poses_output_port(),
+            "body_spatial_velocities": plant.get_body_spatial_velocities_output_port(),
+            "state": plant.get_state_output_port(),
+        },
     )
     AddAppliedSpatialForce(
         builder, plant, rendering.GetOutputPort("applied_spatial_force")

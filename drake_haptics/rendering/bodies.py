@@ -16,7 +16,7 @@ from pydrake.geometry import (
 )
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import BodyIndex, RigidBody
+from pydrake.multibody.tree import BodyIndex, QuaternionFloatingJoint, RigidBody
 
 from drake_haptics import _core
 from drake_haptics.geometry.parsing.body_shapes import (
@@ -78,6 +78,27 @@ def find_body(plant: MultibodyPlant, body: RigidBody | str, argument: str) -> Ri
         raise ValueError(f"{argument}: several bodies are called {body!r}: {names}")
     names = ", ".join(other.name() for other in _all_bodies(plant))
     raise ValueError(f"{argument}: no body is called {body!r}; there are {names}")
+
+
+def find_in_state(body: RigidBody) -> tuple[int, int] | None:
+    """Returns where a plant's state [q; v] has a body's own pose and velocity.
+
+    Returns:
+        Indices of the pose (7) [qw qx qy qz x y z] of its frame in the world and of its
+        spatial velocity (6) [ω; v]; None where the body is not free.
+    """
+    plant = body.GetParentPlant()
+    frames = (plant.world_frame().index(), body.body_frame().index())
+    for joint in map(plant.get_joint, plant.GetJointIndices()):
+        if isinstance(joint, QuaternionFloatingJoint) and frames == (
+            joint.frame_on_parent().index(),
+            joint.frame_on_child().index(),
+        ):
+            return (
+                joint.position_start(),
+                plant.num_positions() + joint.velocity_start(),
+            )
+    return None
 
 
 def find_environment(

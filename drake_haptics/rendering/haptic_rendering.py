@@ -31,6 +31,7 @@ class HapticRendering(Diagram):
         input_ports:
         - body_poses
         - body_spatial_velocities
+        - state (with bodies that are free)
         - X_WH (with a coupling, without a device)
         - V_WH (with a coupling, without a device)
         output_ports:
@@ -54,8 +55,9 @@ class HapticRendering(Diagram):
         - energy_J (with passivity control)
         - applied_spatial_force
 
-    * `body_poses`, `body_spatial_velocities` and `applied_spatial_force` belong to the
-      plant's ports of these names.
+    * `body_poses`, `body_spatial_velocities`, `state` and `applied_spatial_force`
+      belong to the plant's ports of these names. Contact, coupling and effects read the
+      motion of a free body from the `state`, which takes less time at each tick.
     * `X_WT` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
       frames in the world, m; `V_WT` and `V_WO_<name>` (6) their spatial velocities
       [ω; v] at the frame's origin in the world, rad/s and m/s.

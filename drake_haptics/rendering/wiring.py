@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
@@ -15,7 +15,7 @@ from drake_haptics.loop.contact import (
     find_contact_gains,
 )
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
-from drake_haptics.rendering.bodies import RenderedBody
+from drake_haptics.rendering.bodies import RenderedBody, find_in_state
 from drake_haptics.rendering.proxy import make_proxy_step
 from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
@@ -77,6 +77,8 @@ class RenderingWiring:
         for port in map(motions.get_input_port, range(motions.num_input_ports())):
             self.builder.ExportInput(port, port.get_name())
         self.outputs = _name_outputs(motions)
+        moving = {f"O_{item.name}": item for item in objects if item.X_WB is None}
+        self._free = self._split_state({"T": tool, **moving})
 
     @property
     def sources(self) -> dict[str, OutputPort]:
@@ -84,9 +86,44 @@ class RenderingWiring:
         asked = {} if self._asked is None else {"F_Ho_W_desired": self._asked}
         return {
             **self.outputs,
+            **self._free,
             **asked,
             **{f"F_To_W_{name}": port for name, port in self._on_tool.items()},
             **{f"F_O_W_{name}": port for name, port in self._on_objects.items()},
+        }
+
+    def _split_state(self, bodies: Mapping[str, RenderedBody]) -> dict[str, OutputPort]:
+        """Returns the motions of free bodies, as Drake's own system finds them.
+
+        Python reads the poses of all bodies of a plant to find one, at every tick. A
+        plant's state has that of a free body with a quaternion of any length.
+
+        Args:
+            bodies: Bodies, by the letters of their frames.
+
+        Returns:
+            Sources for inputs of their names.
+        """
+        found: list[tuple[int, int, str]] = []
+        for frame, item in bodies.items():
+            if (starts := find_in_state(item.body)) is not None:
+                q, v = starts
+                found += [(q, 7, f"X_W{frame}"), (v, 6, f"V_W{frame}")]
+        if not found:
+            return {}
+        size = self._tool.body.GetParentPlant().num_multibody_states()
+        parts: list[tuple[int, str]] = []
+        end = 0
+        for start, length, name in [*sorted(found), (size, 0, "")]:
+            parts += [(start - end, ""), (length, name)]
+            end = start + length
+        parts = [part for part in parts if part[0]]
+        system = self.builder.AddNamedSystem(
+            "state_parts", Demultiplexer([length for length, _ in parts])
+        )
+        self.builder.ExportInput(system.get_input_port(), "state")
+        return {
+            name: system.get_output_port(i) for i, (_, name) in enumerate(parts) if name
         }
 
     def add_contact(
@@ -145,7 +182,7 @@ class RenderingWiring:
         self._contact_stiffness = [self.proxy_gains.stiffness_N_per_m]
         for source, port in {
             body.GetOutputPort("X_WT_next"): proxy.GetInputPort("X_WH"),
-            self.outputs["V_WT"]: proxy.GetInputPort("V_WH"),
+            self.sources["V_WT"]: proxy.GetInputPort("V_WH"),
             proxy.GetOutputPort("X_WT"): body.GetInputPort("X_WP"),
             proxy.GetOutputPort("F_To_W"): body.GetInputPort("F_Po_W"),
         }.items():

@@ -246,6 +246,7 @@ def test_bodies_at_rest_have_no_ports_and_moving_ones_do():
     assert [port.get_name() for port in inputs] == [
         "body_poses",
         "body_spatial_velocities",
+        "state",
     ]
     assert rendering.HasOutputPort("X_WO_cart")
     assert not rendering.HasOutputPort("X_WO_slab")

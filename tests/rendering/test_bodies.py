@@ -11,13 +11,20 @@ from pydrake.geometry import (
     Sphere,
 )
 from pydrake.math import RigidTransform
-from pydrake.multibody.tree import RevoluteJoint, SpatialInertia
+from pydrake.multibody.tree import (
+    FixedOffsetFrame,
+    QuaternionFloatingJoint,
+    RevoluteJoint,
+    SpatialInertia,
+)
 
+from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.geometry.parsing.body_shapes import find_body_geometries
 from drake_haptics.rendering.bodies import (
     exclude_own_contact,
     find_body,
     find_environment,
+    find_in_state,
     make_rendered_bodies,
 )
 
@@ -204,3 +211,33 @@ def test_a_tool_without_collision_shapes_has_nothing_to_filter():
     )
     scene.finalize()
     assert exclude_own_contact(scene.plant, scene.scene_graph, tool, [slab]) == []
+
+
+def test_a_free_body_is_found_in_the_state(scene):
+    """Truth: Drake's own kinematics at a random state, quaternions of any length."""
+    x = np.random.default_rng(0).normal(size=scene.plant.num_multibody_states())
+    scene.start()
+    scene.plant.SetPositionsAndVelocities(scene.context, x)
+    for name in ("arm", "b", "empty"):
+        q, v = find_in_state(scene.plant.GetBodyByName(name))
+        X_WB = vector_to_pose(x[q : q + 7])
+        assert X_WB.IsNearlyEqualTo(scene.pose(name), 1e-14)
+        np.testing.assert_allclose(x[v : v + 6], scene.velocity(name), rtol=1e-15)
+
+
+@pytest.mark.parametrize("name", ["tool", "tip", "slab"])
+def test_a_body_on_another_is_not_found_in_the_state(scene, name):
+    assert find_in_state(scene.plant.GetBodyByName(name)) is None
+
+
+def test_a_free_joint_off_the_bodys_origin_is_not_taken_for_its_pose():
+    scene = PlantScene()
+    tool = scene.add("tool", BALL)
+    grip = scene.plant.AddFrame(
+        FixedOffsetFrame("grip", tool.body_frame(), RigidTransform([0.1, 0, 0]))
+    )
+    scene.plant.AddJoint(
+        QuaternionFloatingJoint("free", scene.plant.world_frame(), grip)
+    )
+    scene.finalize()
+    assert find_in_state(tool) is None

@@ -25,11 +25,13 @@ from drake_haptics.scene.schema import (
 REST = HALF + CONTACT.tolerance_m - MASS * G / 1e3
 BASE = {
     "body_motions",
+    "state_parts",
     "contact_query",
     "contact_clustering",
     "penalty_force",
     "applied_wrenches",
 }
+INPUTS = {"body_poses", "body_spatial_velocities", "state"}
 OUTPUTS = {
     "applied_spatial_force",
     "X_WT",
@@ -55,9 +57,28 @@ def test_without_effects_there_is_only_contact():
     _, rendering = make_scene()
     assert names(rendering) == BASE
     assert outputs(rendering) == OUTPUTS
-    assert inputs(rendering) == {"body_poses", "body_spatial_velocities"}
+    assert inputs(rendering) == INPUTS
     # A state of its own would be a sample of delay.
     assert rendering.CreateDefaultContext().num_total_states() == 0
+
+
+def test_what_free_bodies_feel_comes_from_the_state_whatever_its_quaternions_length():
+    scene, rendering = make_scene(cart=True)
+    fed = sources(rendering)
+    for port in ("contact_query.X_WT", "penalty_force.V_WT", "penalty_force.V_WO_cart"):
+        assert fed[port].startswith("state_parts.")
+    turned = RollPitchYaw(0.5, 0.4, 0.2)
+    scene.start(
+        tool=RigidTransform(turned, [0, 0, HALF]), cart=RigidTransform([0.05, 0, HALF])
+    )
+    forces = []
+    for length in (1.0, -3.0):
+        q = scene.plant.GetPositions(scene.context).copy()
+        q[:4] *= length
+        scene.plant.SetPositions(scene.context, q)
+        forces.append(scene.read(rendering, "F_To_W"))
+    assert forces[0][5] > 1.0
+    np.testing.assert_allclose(forces[1], forces[0], atol=1e-12)
 
 
 def test_a_body_that_moves_has_ports_and_a_reaction():
@@ -252,10 +273,7 @@ def test_a_handle_outside_holds_the_tool_and_feels_it():
     coupling = CouplingParameters(stiffness_N_per_m=500.0)
     X_HT = RigidTransform([0.0, 0.0, -0.1])
     scene, rendering = make_scene(coupling=coupling, X_HT=X_HT)
-    assert inputs(rendering) - {"body_poses", "body_spatial_velocities"} == {
-        "X_WH",
-        "V_WH",
-    }
+    assert inputs(rendering) - INPUTS == {"X_WH", "V_WH"}
     assert outputs(rendering) == OUTPUTS | {"F_Ho_W_commanded"}
     coupled = {"virtual_coupling", "virtual_coupling_wrench", "X_WH", "V_WH"}
     assert names(rendering) == BASE | coupled
@@ -296,7 +314,7 @@ def test_a_device_inside_is_shown_the_contact():
     scene, rendering = make_scene(
         coupling=CouplingParameters(), device=make_device(), X_HT=X_HT
     )
-    assert inputs(rendering) == {"body_poses", "body_spatial_velocities"}
+    assert inputs(rendering) == INPUTS
     device_ports = {"F_Ho_W_commanded", "X_WH", "V_WH", "F_Ho_W_rendered", "status"}
     assert outputs(rendering) == OUTPUTS | device_ports
     assert "device" in names(rendering)
