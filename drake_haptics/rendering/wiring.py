@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+from pydrake.systems.framework import Context, DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Demultiplexer, Multiplexer, ZeroOrderHold
 
 from drake_haptics import _core
@@ -68,6 +68,10 @@ class RenderingWiring:
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
         self._asked: OutputPort | None = None
+        # What `AppliedWrenches` computes contact and coupling from, by its inputs.
+        self._chain: dict[str, OutputPort] = {}
+        self._chained_at: RigidTransform | None = None
+        self._warn_of_depth: Callable[[Context, float, float], None] | None = None
         self.proxy_gains: _core.CouplingGains | None = None
         self._contact_stiffness: Sequence[float] = []
         self._springs: list[tuple[float, float]] = []
@@ -87,6 +91,7 @@ class RenderingWiring:
         return {
             **self.outputs,
             **self._free,
+            **self._chain,
             **asked,
             **{f"F_To_W_{name}": port for name, port in self._on_tool.items()},
             **{f"F_O_W_{name}": port for name, port in self._on_objects.items()},
@@ -148,7 +153,10 @@ class RenderingWiring:
             enable_chain=can_chain(self._objects, contact, effects),
             warns_deep=True,
         )
-        force = found.penalty_force
+        force, query = found.penalty_force, found.contact_query
+        if query.HasOutputPort("contact_chain"):
+            self._chain["contact_chain"] = query.GetOutputPort("contact_chain")
+            self._warn_of_depth = found.contact_clustering.warn_of_depth
         gains = find_contact_gains(contact, materials)
         self._contact_stiffness = gains.stiffness_N_per_m.tolist()
         self._on_tool["contact"] = force.GetOutputPort("F_To_W")
@@ -226,6 +234,10 @@ class RenderingWiring:
         )
         if self._proxy is None:
             self._push_tool("coupling", coupling.GetOutputPort("wrench_model"))
+            if self._chain:
+                joined = coupling.GetOutputPort("motions_and_gains")
+                self._chain["motions_and_gains"] = joined
+                self._chained_at = X_HT
         else:
             pull, proxy = coupling.GetOutputPort("wrench_model"), self._proxy
             body = self.builder.GetSubsystemByName("body_of_proxy")
@@ -301,6 +313,8 @@ class RenderingWiring:
                 list(self._on_tool),
                 list(self._moving.values()),
                 list(self._on_objects),
+                self._chained_at,
+                self._warn_of_depth,
             ),
         )
         self.outputs["applied_spatial_force"] = applied.get_output_port()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from functools import reduce
 from operator import add
@@ -10,16 +10,22 @@ from typing import Any
 
 import numpy as np
 from pydrake.autodiffutils import AutoDiffXd
-from pydrake.common.value import AbstractValue
+from pydrake.common.value import AbstractValue, Value
+from pydrake.math import RigidTransform
 from pydrake.multibody.math import SpatialForce_
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce_
 from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
+from drake_haptics._core import joined_coupling_wrench
+from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.framework.differentiable_system import (
     get_no_witness_functions,
 )
+
+# The tool's motion in `motions_and_gains`.
+_X_WT, _V_WT = slice(13, 20), slice(20, 26)
 
 
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
@@ -43,9 +49,9 @@ def AppliedWrenches_(T: type) -> type:
         applied.F_Bq_W = SpatialForce(F_Bo_W)
         return applied
 
-    def add_up(evals: Sequence[Any], context: Any) -> Any:
+    def add_up(evals: Sequence[Any], context: Any, first: Sequence[Any] = ()) -> Any:
         """Returns the sum of vectors; `sum` begins with 0, a slow sum in itself."""
-        return reduce(add, [evaluate(context) for evaluate in evals])
+        return reduce(add, [*first, *(evaluate(context) for evaluate in evals)])
 
     class Impl(LeafSystem_[T]):
         """Sums wrenches on the tool and on objects, each at its body's origin.
@@ -56,6 +62,8 @@ def AppliedWrenches_(T: type) -> type:
             input_ports:
             - F_To_W_<name of each wrench on the tool>
             - F_O_W_<name of each set of wrenches on the objects>
+            - contact_chain (with the chain)
+            - motions_and_gains (with the chain)
             output_ports:
             - applied_spatial_force
 
@@ -63,6 +71,10 @@ def AppliedWrenches_(T: type) -> type:
           world, N·m and N.
         * `F_O_W_<name>` (6 for each object) are such wrenches on the objects, in
           their order.
+        * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (32) that of
+          `VirtualCoupling`. With them the core computes the first two wrenches on the
+          tool, those of the contacts and of the coupling, bit for bit as the inputs
+          have them; those inputs then serve for inspection and for derivatives.
         * `applied_spatial_force` is a list of `ExternallyAppliedSpatialForce`, for the
           port of this name of a `MultibodyPlant`: tool, then objects.
 
@@ -77,6 +89,8 @@ def AppliedWrenches_(T: type) -> type:
             tool_wrenches: Sequence[str],
             objects: Sequence[BodyIndex] = (),
             object_wrenches: Sequence[str] = (),
+            chained_at: RigidTransform | None = None,
+            warn_of_depth: Callable[[Any, float, float], None] | None = None,
             converter: Any = None,
         ) -> None:
             """Constructs the system.
@@ -86,6 +100,10 @@ def AppliedWrenches_(T: type) -> type:
                 tool_wrenches: A name for each wrench on the tool.
                 objects: Bodies of the objects that move.
                 object_wrenches: A name for each set of wrenches on the objects.
+                chained_at: X_HT of the coupling, if contacts and coupling are computed
+                    here; they are the first two wrenches on the tool then.
+                warn_of_depth: Function `warn_of_depth` of the `ContactClustering`,
+                    which the chain bypasses. Defaults to no warning.
                 converter: Scalar converter, which Drake passes.
             """
             LeafSystem_[T].__init__(self, converter=converter)
@@ -100,6 +118,16 @@ def AppliedWrenches_(T: type) -> type:
                 self.DeclareVectorInputPort(f"F_O_W_{name}", 6 * len(objects)).Eval
                 for name in object_wrenches
             ]
+            self._chained_at = chained_at
+            self._warn_of_depth = warn_of_depth
+            if chained_at is not None:
+                self._q_HT = pose_to_vector(chained_at)
+                self._eval_chain = self.DeclareAbstractInputPort(
+                    "contact_chain", Value[object]()
+                ).Eval
+                self._eval_joined = self.DeclareVectorInputPort(
+                    "motions_and_gains", 32
+                ).Eval
             self.DeclareAbstractOutputPort(
                 "applied_spatial_force",
                 lambda: AbstractValue.Make([AppliedForce()]),
@@ -110,10 +138,31 @@ def AppliedWrenches_(T: type) -> type:
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
             tool, *objects = other._bodies
             on_tool, on_objects = other._names
-            Impl._construct(self, tool, on_tool, objects, on_objects, converter)
+            Impl._construct(
+                self,
+                tool,
+                on_tool,
+                objects,
+                on_objects,
+                other._chained_at,
+                other._warn_of_depth,
+                converter,
+            )
+
+        def _add_up_on_tool(self, context: Any) -> Any:
+            """Returns the sum of the wrenches (6,) on the tool."""
+            # The chain has no derivatives.
+            if self._chained_at is None or T is not float:
+                return add_up(self._eval_on_tool, context)
+            chain, joined = self._eval_chain(context), self._eval_joined(context)
+            contact = chain.find_force(joined[_X_WT], joined[_V_WT])
+            if self._warn_of_depth is not None:
+                self._warn_of_depth(context, *chain.deepest)
+            coupling = joined_coupling_wrench(joined, self._q_HT)[:6]
+            return add_up(self._eval_on_tool[2:], context, [contact, coupling])
 
         def _calc_forces(self, context: Any, forces: AbstractValue) -> None:
-            wrenches = [add_up(self._eval_on_tool, context)]
+            wrenches = [self._add_up_on_tool(context)]
             if self._eval_on_objects:
                 on_objects = add_up(self._eval_on_objects, context)
                 wrenches += [

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cube_scene import CONTACT, HALF, MASS, G, make_scene
+from diagram_parts import sources
 from plant_scenes import PLANTS
 from pydrake.math import RigidTransform, RollPitchYaw
 from slider_device import make_device
@@ -57,12 +58,15 @@ def test_a_body_falls_and_rolls_bit_by_bit_alike(monkeypatch, config) -> None:
     assert one[:, -1].max() > 1.0
 
 
-def test_a_device_and_its_coupling_act_beside_the_chain(monkeypatch) -> None:
-    def make():
-        return make_scene(coupling=CouplingParameters(), device=make_device())
+def make_held():
+    return make_scene(coupling=CouplingParameters(), device=make_device())
 
+
+def test_a_device_and_its_coupling_act_in_the_chain(monkeypatch) -> None:
     pressed = RigidTransform([0.0, 0.0, 0.9 * HALF])
-    scenes = make_both(monkeypatch, make, pressed)
+    scenes = make_both(monkeypatch, make_held, pressed)
+    fed = sources(scenes[0][1])
+    assert fed["applied_wrenches.contact_chain"] == "contact_query.contact_chain"
     one, other = (advance(*scene, 0.05) for scene in scenes)
     np.testing.assert_array_equal(one, other)
     shown = [scene.read(rendering, "F_Ho_W_rendered") for scene, rendering in scenes]
@@ -109,12 +113,13 @@ def test_what_changes_mid_run_counts_at_once(monkeypatch, name, change) -> None:
     assert abs(after[-1] - before[-1]) > 0.1 * MASS * G
 
 
-def test_a_deep_contact_is_warned_of_once_either_way(monkeypatch) -> None:
+@pytest.mark.parametrize("make", [make_scene, make_held])
+def test_a_deep_contact_is_warned_of_once_either_way(monkeypatch, make) -> None:
     deep = RigidTransform([0.0, 0.0, HALF - 12.0 * CONTACT.tolerance_m])
-    for scene, rendering in make_both(monkeypatch, make_scene, deep):
+    for scene, rendering in make_both(monkeypatch, make, deep):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            advance(scene, rendering, 3e-3)
+            scene.simulator.AdvanceTo(3e-3)
             scene.read(rendering, "clusters")
         told = [w for w in caught if issubclass(w.category, SceneWarning)]
         assert len(told) == 1
