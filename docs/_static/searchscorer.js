@@ -17,7 +17,7 @@ var Scorer = (() => {
   // What people call it who do not know what pages and sections call it.
   const ABOUT = {
     "accuracy": "how exact error budget",
-    "reference/api-stability": "version compatible breaking deprecated",
+    "reference/api#what-is-stable-and-for-how-long": "version compatible breaking deprecated",
     "architecture": "source folder layout contribute",
     "cockpit#without-a-device": "no device simulate device browser",
     "comparison": "alternative versus limits",
