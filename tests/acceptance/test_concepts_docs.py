@@ -42,7 +42,7 @@ def test_names_are_keys_of_a_scene_or_names_of_the_package(name):
     )
 
 
-@pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)", TEXT))
+@pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)[#)]", TEXT))
 def test_links_lead_somewhere(target):
     assert (DOCS / target).exists()
 

@@ -39,8 +39,8 @@ SOUGHT = {
     "PenaltyForce": "reference/generated/system-penalty_force.html",
     "cluster_size_m": "reference/scene-file.html",
     "peg hole tolerance": "troubleshooting.html#does-not-fit",
-    "damping unit": "glossary.html#units",
-    "force on the hand": "glossary.html",
+    "damping unit": "concepts.html#units",
+    "force on the hand": "concepts.html",
     "buzzing": "troubleshooting.html#buzzing",
     "mesh in millimeters": "troubleshooting.html#meshes",
     "network delay": "stability.html",
@@ -122,7 +122,7 @@ def find_unknown_places(pages: Pages, site: Path) -> list[str]:
     """Returns the pages and sections that the search knows of and that are not."""
     text = (ROOT / "docs/_static/searchscorer.js").read_text(encoding="utf-8")
     about = text.partition("ABOUT = {")[2].partition("};")[0]
-    places = re.findall(r'"([\w-]+)#?([\w-]*)": "', about)
+    places = re.findall(r'"([\w/-]+)#?([\w-]*)": "', about)
     assert len(places) > 10
     return [
         f"{name}#{anchor}"
