@@ -1,4 +1,4 @@
-"""The lists of words and units know the ending of every key; what they name is there."""
+"""The page of words knows the ending of every key, and what it names is there."""
 
 import re
 from pathlib import Path
