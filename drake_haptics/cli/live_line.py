@@ -5,9 +5,11 @@ from __future__ import annotations
 import gc
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from contextlib import suppress
 from queue import SimpleQueue
+from typing import TypeVar
 
 from rich.console import Console
 from rich.live import Live
@@ -17,15 +19,51 @@ _PERIOD_S = 0.2
 _BETWEEN = " · "
 # A terminal or reader that takes nothing for this long is not waited for.
 _END_S = 0.5
+_Writer = TypeVar("_Writer", bound="_LineWriter")
 
 
-class LiveLine:
-    """Shows what a loop does, and never keeps it waiting.
+class _LineWriter(ABC):
+    """Writes lines for a loop, and never keeps it waiting.
 
     Only a thread of its own writes: at Ctrl-S, or where the connection to the terminal
-    hangs, a write does not return, and a loop that hangs leaves its last force on. As
-    long as the terminal does not take a line, no other is written. Where the output is
-    not a terminal nothing is written.
+    hangs, a write does not return, and a loop that hangs leaves its last force on.
+
+    Args:
+        name: Name of the thread.
+        writes: Whether it writes at all.
+    """
+
+    def __init__(self, name: str, writes: bool):
+        self._writes = writes
+        # Lines on their way; None is the end.
+        self._lines: SimpleQueue[str | None] = SimpleQueue()
+        self._thread = threading.Thread(target=self._write, name=name, daemon=True)
+
+    def __enter__(self: _Writer) -> _Writer:
+        """Starts to write."""
+        if self._writes:
+            # Drake ends the process if a Meshcat dies in another thread than its own.
+            # One that is dead already must not meet its end by chance in the thread.
+            gc.collect()
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Writes what is left, if the reader takes it."""
+        if self._writes:
+            self._lines.put(None)
+            self._thread.join(_END_S)
+
+    @abstractmethod
+    def _write(self) -> None:
+        """Writes lines until the end; runs in the thread."""
+
+
+class LiveLine(_LineWriter):
+    """Shows what a loop does in a line of the terminal.
+
+    As long as the terminal does not take a line, no other is written. Where the output
+    is not a terminal nothing is written.
 
     Args:
         console: Console to write to.
@@ -41,36 +79,16 @@ class LiveLine:
         make_line: Callable[[float], str],
         clock: Callable[[], float] = time.perf_counter,
     ):
+        super().__init__("live_line", console.is_terminal)
         self._make_line = make_line
         self._clock = clock
         self._live = Live(console=console, auto_refresh=False, transient=True)
-        self._shown = console.is_terminal
         self._last_s = clock()
-        # Lines on their way to the terminal; None is the end.
-        self._lines: SimpleQueue[str | None] = SimpleQueue()
-        self._thread = threading.Thread(
-            target=self._write, name="live_line", daemon=True
-        )
-
-    def __enter__(self) -> LiveLine:
-        """Starts the line."""
-        if self._shown:
-            # Drake ends the process if a Meshcat dies in another thread than its own.
-            # One that is dead already must not meet its end by chance in the thread.
-            gc.collect()
-            self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Removes the line."""
-        if self._shown:
-            self._lines.put(None)
-            self._thread.join(_END_S)
 
     def update(self) -> None:
         """Makes a new line, if it is time; otherwise a call costs well under 1 µs."""
         now_s = self._clock()
-        if not self._shown or now_s < self._last_s + _PERIOD_S:
+        if not self._writes or now_s < self._last_s + _PERIOD_S:
             return
         if not self._lines.empty():
             return
@@ -99,10 +117,8 @@ def _make_text(line: str, width: int) -> Text:
     return text
 
 
-class ChangeLog:
+class ChangeLog(_LineWriter):
     """Writes a line to a file or a journal whenever something has changed.
-
-    Only a thread of its own writes: the loop never waits for a reader.
 
     Args:
         console: Output; nothing is written if it is a terminal.
@@ -116,30 +132,16 @@ class ChangeLog:
         describe: Callable[[], str],
         clock: Callable[[], float] = time.monotonic,
     ):
+        super().__init__("change_log", not console.is_terminal)
         self._console = console
         self._describe = describe
         self._clock = clock
         self._start_s = clock()
         self._last = ""
-        # Lines on their way; None is the end.
-        self._lines: SimpleQueue[str | None] = SimpleQueue()
-        self._thread = threading.Thread(
-            target=self._write, name="change_log", daemon=True
-        )
-
-    def __enter__(self) -> ChangeLog:
-        """Starts to write."""
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Writes what is left."""
-        self._lines.put(None)
-        self._thread.join(_END_S)
 
     def update(self) -> None:
         """Notes what has changed since the last call, if anything has."""
-        if self._console.is_terminal:
+        if not self._writes:
             return
         words = self._describe()
         if words != self._last:
