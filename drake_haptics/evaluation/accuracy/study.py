@@ -276,7 +276,6 @@ def run_accuracy_study(
     progress: Progress | None = None,
     quick: bool = False,
     count_instructions: bool = False,
-    stability: bool = True,
 ) -> AccuracyStudy:
     """Measures the settings of a scene.
 
@@ -297,7 +296,6 @@ def run_accuracy_study(
             stiffnesses.
         count_instructions: Whether to count the core's instructions with valgrind, in
             the 500 ticks with the most contact, for some ten seconds each.
-        stability: Whether to look for the largest stable stiffness of each setting.
 
     Raises:
         HapticsError: Instructions are asked for, but valgrind is not installed.
@@ -309,7 +307,7 @@ def run_accuracy_study(
     require_penalty(scene.contact, "errors and knobs are")
     if count_instructions:
         require_valgrind()
-    measurement = _prepare(scene, report, quick, stability and not quick)
+    measurement = _prepare(scene, report, quick)
     if settings is None:
         settings = list_few_settings(scene) if quick else list_settings(scene)
     settings = [AS_IT_IS, *(setting for setting in settings if setting != AS_IT_IS)]
@@ -356,16 +354,14 @@ def _find_measured(scene: Scene, settings: Sequence[Setting]) -> list[Setting]:
     ]
 
 
-def _prepare(
-    scene: Scene, report: Progress, quick: bool, stability: bool
-) -> Measurement:
+def _prepare(scene: Scene, report: Progress, quick: bool) -> Measurement:
     """Finds the motion, the truth and the place that settings are compared on."""
     report("recording the motion", 0.0)
     motion = record_motion(scene, choose_duration(scene, _QUICK_S) if quick else None)
     report("finding the truth", _TRUTH)
     truth = find_truth(make_reference(scene).apply(scene), motion)
     place = None
-    if stability:
+    if not quick:
         report("looking for the firmest contact", _PRESS)
         # One thread as in a task: the same bits on any number of cores.
         with one_blas_thread():
