@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform
 
+from drake_haptics.common.one_line import count
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.checks import (
@@ -101,8 +102,9 @@ def _question_open(haptic: HapticDiagram) -> list[str]:
     ]
     return [
         f"{key}: {Path(item.mesh).name} is open: {report.one_sided_triangles:,} of"
-        f" {report.triangles:,} triangles bound no solid, so that a tool can get behind"
-        " them, and their pieces are many and flat; drake-haptics check lists the holes"
+        f" {count(report.triangles, 'triangle')} bound no solid, so that a tool can get"
+        " behind them, and their pieces are many and flat; drake-haptics check lists"
+        " the holes"
         for key, item, part in parts
         if (report := part.mesh.report).one_sided_triangles
     ]
