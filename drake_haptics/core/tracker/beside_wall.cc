@@ -12,7 +12,7 @@ namespace {
 
 // Cosine of the largest angle between the direction of the closest points and
 // the normal of two edges for which they stand.
-constexpr double kLargestEdgeTurn = 0.5;
+constexpr double kLargestTurn = 0.5;
 // Round-off of positions, as a share of the size.
 constexpr double kRoundOff = 1e-12;
 
@@ -30,7 +30,7 @@ bool DoCrossOutOfWalls(const PosedPair& pair, const Separation& separation,
   const double sign = cross.dot(separation.n) > 0 ? 1.0 : -1.0;
   const Vec3 n = cross * (sign / length);
   const double h = n.dot(pair.a(corner.a) - pair.b(corner.b));
-  if (n.dot(separation.n) < kLargestEdgeTurn || !(h > 0)) return false;
+  if (n.dot(separation.n) < kLargestTurn || !(h > 0)) return false;
   MinkowskiVertex vertex_pair = corner;
   if (SupportGap(pair, n, &vertex_pair) < h - Tie(pair)) return false;
   const Feature edge_A(FeatureKind::kEdge, a.edge);
