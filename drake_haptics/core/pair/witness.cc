@@ -54,17 +54,26 @@ double OutsideSegment(const Segment& s, const Vec3& point) {
   return OutsideSegment(s, point, [](const Vec3&) { return 0.0; });
 }
 
-// Distance of a point (in the polytope's frame) beyond a facet's sides.
-double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
+// Distance of a point (in the polytope's frame) beyond a facet's sides, less
+// the distance allowed beyond a side with that outward normal.
+template <typename Allowed>
+double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point,
+                    const Allowed& allowed) {
   const int start = polytope.facet_loop_start[facet];
   const int end = polytope.facet_loop_start[facet + 1];
   double outside = 0;
   for (int k = start; k < end; ++k) {
     const Vec3& corner = polytope.vertices[polytope.facet_loop[k]];
-    outside =
-        std::max(outside, polytope.facet_loop_side[k].dot(point - corner));
+    const Vec3& outward = polytope.facet_loop_side[k];
+    const double beyond = outward.dot(point - corner);
+    if (beyond > outside)
+      outside = std::max(outside, beyond - allowed(outward));
   }
   return outside;
+}
+
+double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
+  return OutsideFacet(polytope, facet, point, [](const Vec3&) { return 0.0; });
 }
 
 }  // namespace
@@ -103,10 +112,10 @@ double LateralOffset(const PosedPair& pair, Feature feature_A,
                   OutsideSegment(EdgeOfB(pair, feature_B), witness.p_b));
 }
 
-double EdgeOffsetOutOfWalls(const PosedPair& pair, Feature edge_A,
-                            Feature edge_B, const Vec3& n,
-                            const Witness& witness,
-                            std::span<const Vec3> translation_vectors) {
+double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
+                               Feature feature_B, const Vec3& n,
+                               const Witness& witness,
+                               std::span<const Vec3> translation_vectors) {
   // Largest displacement of A, by any way out, against a direction in A's
   // frame.
   const auto back = [&](const Vec3& along) {
@@ -118,8 +127,16 @@ double EdgeOffsetOutOfWalls(const PosedPair& pair, Feature edge_A,
     return farthest;
   };
   const auto back_A = [&](const Vec3& outward) { return back(-outward); };
-  return std::max(OutsideSegment(EdgeOfA(pair, edge_A), witness.p_a, back_A),
-                  OutsideSegment(EdgeOfB(pair, edge_B), witness.p_b, back));
+  if (feature_B.kind() == FeatureKind::kFacet) {
+    return OutsideFacet(
+        pair.B, feature_B.index(), pair.X_AB.inverse() * witness.p_b,
+        [&](const Vec3& outward) { return back(pair.X_AB.R * outward); });
+  }
+  if (feature_A.kind() == FeatureKind::kFacet) {
+    return OutsideFacet(pair.A, feature_A.index(), witness.p_a, back_A);
+  }
+  return std::max(OutsideSegment(EdgeOfA(pair, feature_A), witness.p_a, back_A),
+                  OutsideSegment(EdgeOfB(pair, feature_B), witness.p_b, back));
 }
 
 }  // namespace drake_haptics

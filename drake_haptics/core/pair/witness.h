@@ -30,14 +30,13 @@ Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
 [[nodiscard]] double LateralOffset(const PosedPair& pair, Feature feature_A,
                                    Feature feature_B, const Witness& witness);
 
-/// How far (m) the point where two edges cross lies beyond their ends, after A
-/// is moved out of the walls that stand upright on the contact's plane, or lean
-/// over it.
+/// The same after A is moved out of the walls that stand upright on the
+/// contact's plane, or lean over it.
 /// @param n normal of the contact, unit, in A's frame.
 /// @param translation_vectors translations of A out of one wall each, in its
 /// frame, m.
-[[nodiscard]] double EdgeOffsetOutOfWalls(
-    const PosedPair& pair, Feature edge_A, Feature edge_B, const Vec3& n,
+[[nodiscard]] double LateralOffsetOutOfWalls(
+    const PosedPair& pair, Feature feature_A, Feature feature_B, const Vec3& n,
     const Witness& witness, std::span<const Vec3> translation_vectors);
 
 }  // namespace drake_haptics

@@ -28,8 +28,7 @@ namespace drake_haptics {
 /// flush edges, breadth first, while the gap to the plane is below the
 /// tolerance. A facet takes part if
 /// - it and the contact's facet face each other: on each, the point nearest to
-///   the other body's vertex lies in front of the other's plane (around the
-///   thread of a bolt the facets lead behind the first one);
+///   the other body's vertex lies in front of the other's plane;
 /// - the vertex deepest below its plane lies over it, or farther beyond the
 ///   edge through which the facet was reached than beyond any other, and not
 ///   beyond a convex edge;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tracker/feature_coverage.h"
-
 namespace drake_haptics {
 namespace {
 
@@ -15,16 +13,6 @@ constexpr double kLargestTurn = 0.5;
 // angle of that cone, 10° above the largest turn.
 constexpr double kAlike = 0.985;
 constexpr double kLargestTurnOfAlike = 0.34;
-// For pieces with more facets and edges than this a walk costs less than a list
-// of facets.
-constexpr std::size_t kMaxFeatures = 1024;
-
-bool IsWorthListing(const PosedPair& pair) {
-  const Polytope &A = pair.A, &B = pair.B;
-  return A.dimension >= 2 && B.dimension >= 2 &&
-         A.facets.size() + A.edges.size() + B.facets.size() + B.edges.size() <=
-             kMaxFeatures;
-}
 
 }  // namespace
 
@@ -44,25 +32,6 @@ bool ContactPersistence::IsTransferred(const DepthCandidate& facet) const {
                      });
 }
 
-bool ContactPersistence::MayFind(const MinkowskiVertex& near,
-                                 const WantedFacets* own,
-                                 SurfacePairWorkspace* workspace) const {
-  if (!IsWorthListing(pair_)) return true;
-  std::vector<WantedFacets>& wanted = workspace->wanted;
-  wanted.clear();
-  if (own != nullptr) wanted.push_back(*own);
-  AppendWanted(&wanted);
-  std::vector<DepthCandidate>& facets = workspace->supported;
-  ListSupportedFacets(pair_, near, wanted, &facets);
-  return std::any_of(facets.begin(), facets.end(), [&](const auto& facet) {
-    return ((own != nullptr && own->Hold(facet.n, facet.h)) ||
-            IsTransferred(facet)) &&
-           IsWithinFeatures(pair_, facet, request_.tolerance,
-                            &workspace->patch);
-  });
-}
-
-// Appends bounds that hold every facet that IsTransferred accepts.
 void ContactPersistence::AppendWanted(std::vector<WantedFacets>* wanted) const {
   const std::size_t own = wanted->size();
   for (const PenetratingContact& last : request_.pressed) {

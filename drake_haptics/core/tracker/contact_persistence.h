@@ -25,16 +25,10 @@ class ContactPersistence {
   /// Whether a contact of the last tick on other pieces continues in it.
   bool IsTransferred(const DepthCandidate& facet) const;
 
-  /// Whether a walk may find a facet of A ⊖ B on whose own features the bodies
-  /// press and that takes a contact over (IsTransferred) or, where `own` is
-  /// given, that `own` holds. False proves that it cannot, at less cost than a
-  /// walk that finds nothing.
-  /// @param near vertices near which the bodies overlap, for speed only.
-  bool MayFind(const MinkowskiVertex& near, const WantedFacets* own,
-               SurfacePairWorkspace* workspace) const;
+  /// Appends bounds that hold every facet that IsTransferred accepts.
+  void AppendWanted(std::vector<WantedFacets>* wanted) const;
 
  private:
-  void AppendWanted(std::vector<WantedFacets>* wanted) const;
   double LeastGap(const PenetratingContact& last) const;
   bool Follows(const DepthCandidate& facet,
                const PenetratingContact& last) const;

@@ -12,8 +12,10 @@
 #include "pair/separation.h"
 #include "pair/warm_facet.h"
 #include "pair/witness.h"
-#include "tracker/beside_wall.h"
+#include "tracker/brute_force_supported_facets.h"
+#include "tracker/closest_feature_replacement.h"
 #include "tracker/contact_persistence.h"
+#include "tracker/deeper_overlap_reject.h"
 #include "tracker/feature_coverage.h"
 #include "tracker/surface_entry.h"
 
@@ -38,25 +40,6 @@ constexpr double kComingFrom = -0.2;
 constexpr double kEntryShare = 0.25;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
-
-// Shallowest facet of A ⊖ B (global_depth.h), virtual ones included, with its
-// support by the surfaces. kNoFacet if A ⊖ B has no interior.
-// @param start a vertex pair to walk from.
-Depth LeastOfAllFacets(const PosedPair& pair, const MinkowskiVertex& start,
-                       GlobalDepthState* state) {
-  const Depth local = WalkDepth(pair, start, SurfaceRule::kWholeBoundary,
-                                nullptr, {}, &state->walk);
-  const GlobalDepth found = FindGlobalDepth(pair, local, state);
-  if (found.status == GlobalDepthStatus::kFlat) return {};
-  Depth least{found.status == GlobalDepthStatus::kExact
-                  ? DepthStatus::kLocalMinimum
-                  : DepthStatus::kBounded,
-              found.facet, found.facet.h, found.vertex_pair};
-  least.best.support = ClassifySupport(
-      pair.A, least.best.feature_A, least.best.n, pair.B, least.best.feature_B,
-      pair.X_AB.R.transpose() * least.best.n);
-  return least;
-}
 
 class Query {
  public:
@@ -133,11 +116,22 @@ class Query {
     if (AreBothWanted(pair_, separation_)) return Overlapping();
     const PairContact contact = ContactApart(pair_, separation_);
     if (IsSupported(contact)) return contact;
-    ends_early_ = IsClosestAtVertex(separation_);
-    if (IsBesideWall(pair_, separation_, request_.translation_vectors)) {
-      return contact;
+    const auto promoted = Promoted(contact);
+    return promoted ? promoted : Behind();
+  }
+
+  // Replaces the contact at the closest points where the surfaces do not carry
+  // it.
+  std::optional<PairContact> Promoted(const PairContact& closest) {
+    const Promotion promotion =
+        PromoteClosestPoints(pair_, separation_, request_);
+    ends_early_ = promotion.ends_early;
+    if (promotion.facet.support != NormalConeSupport::kSupported) {
+      if (promotion.is_beside_wall) return closest;
+      return std::nullopt;
     }
-    return Behind();
+    facet_vertex_pair_ = promotion.vertex_pair;
+    return ContactAtFacet(pair_, promotion.facet, ContactStatus::kNear);
   }
 
   // For a pair without a contact of its own: the tool is out of reach, or
@@ -190,6 +184,10 @@ class Query {
       if (least) return AtDepth(*least);
     }
     if (!entry && !IsPlausible(depth)) {
+      if (state_.in_contact) {
+        const auto begun = Entry();
+        if (begun) return AtDepth(*begun);
+      }
       Refuse(depth.best.n, depth.vertex_pair);
       const auto contact = GoneOn();
       return contact ? contact : TransferredFrom();
@@ -219,16 +217,10 @@ class Query {
         IsWithinFeatures(least.best)) {
       return least;
     }
-    if (pair_.A.dimension < 2 || pair_.B.dimension < 2) return std::nullopt;
     const bool is_tracked = IsPlausible(tracked);
-    const double floor = is_tracked ? tracked.best.h : kNoFloor;
-    const WantedFacets wanted{{}, std::min(floor, 0.0)};
-    std::vector<DepthCandidate>& facets = workspace_.supported;
-    ListSupportedFacets(pair_, tracked.vertex_pair, {&wanted, 1}, &facets);
-    std::sort(facets.begin(), facets.end(),
-              [](const auto& p, const auto& q) { return p.h > q.h; });
-    for (const DepthCandidate& facet : facets) {
-      if (!(facet.h > floor)) break;
+    ListSupportedFacetsByBruteForce(
+        pair_, is_tracked ? tracked.best.h : kNoFloor, &workspace_.supported);
+    for (const DepthCandidate& facet : workspace_.supported) {
       const Depth depth{DepthStatus::kLocalMinimum, facet, least.best.h,
                         VertexPairOf(pair_, facet)};
       if (is_tracked ? IsWithinFeatures(facet) : IsPlausible(depth)) {
@@ -266,7 +258,8 @@ class Query {
   }
 
   bool MayFind(const WantedFacets* own) {
-    return persistence_.MayFind(state_.vertex_pair, own, &workspace_);
+    return MayOverlapDeeper(pair_, request_, persistence_, state_.vertex_pair,
+                            own, &workspace_);
   }
 
   // Finds the facet where the overlap of a pair that was apart began.
@@ -339,7 +332,15 @@ class Query {
            LayInFront(pair_, depth.best, request_.last_X_AB) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
-                depth.shallowest - kEntryShare * request_.tolerance);
+                depth.shallowest - kEntryShare * request_.tolerance &&
+            !IsDeeperThanWay(depth.best));
+  }
+
+  // For an overlap that has just begun: whether it is deeper than the bodies
+  // have moved.
+  bool IsDeeperThanWay(const DepthCandidate& facet) const {
+    return HasBegun() && !request_.is_first &&
+           facet.h < -LongestWay(pair_, request_.last_X_AB);
   }
 
   // Contact at the shallowest visited facet that continues the last contact:
@@ -463,7 +464,7 @@ class Query {
   Separation separation_;
   bool did_overlap_ = false;  // at the last query
   bool is_refused_ = false;   // an overlap had no plausible facet
-  bool ends_early_ = false;   // more translation_vectors might give a contact
+  bool ends_early_ = false;   // see Promotion
   // Of the answer, if it is at a facet.
   std::optional<MinkowskiVertex> facet_vertex_pair_;
 };

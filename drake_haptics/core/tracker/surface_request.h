@@ -43,9 +43,8 @@ struct SurfaceRequest {
   double tolerance = 0;  ///< surfaces farther apart (m) have no contact
   /// The surfaces cross and no other contact was found: any way out counts.
   bool is_any_way_out = false;
-  /// Pose at the last query, or from which the bodies may have come where none
-  /// is known. It tells the motion of a contact and the side from which the
-  /// bodies came together.
+  /// Pose at the last query. It tells the motion of a contact and the side from
+  /// which the bodies came together.
   Pose last_X_AB;
   /// Contacts of the last tick that press. A pair that was not in contact may
   /// take them over.
@@ -56,6 +55,9 @@ struct SurfaceRequest {
   /// Bound on the steps of a walk. The search for a first facet that both
   /// surfaces carry has its own bounds, so that this one loses no contact.
   int max_walk_steps = WalkBounds{}.max_steps;
+  /// No earlier pose is known; last_X_AB is where the bodies may have come
+  /// from.
+  bool is_first = false;
 };
 
 }  // namespace drake_haptics

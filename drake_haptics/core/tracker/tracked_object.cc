@@ -311,7 +311,7 @@ void TrackedObject::QueryPair(const Tick& tick, TrackerWorkspace* workspace,
   const auto answer = QuerySurfacePair(
       posed,
       {tick.tolerance, is_any_way_out, last_X_AB, pressed_,
-       workspace->translation_vectors, tick.depth.max_walk_steps},
+       workspace->translation_vectors, tick.depth.max_walk_steps, is_first_},
       &state, &workspace->pair, global);
   pair->slack = 0;
   state.press = -1;

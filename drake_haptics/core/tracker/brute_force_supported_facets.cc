@@ -1,20 +1,18 @@
-// The facets that both surfaces carry by enumeration, as the truth of tests.
-#pragma once
+#include "tracker/brute_force_supported_facets.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <vector>
+#include <cmath>
 
-#include "convex/normal_cone_support.h"
 #include "pair/gauss_overlay.h"
-#include "pair/local_penetration_walk.h"
 
 namespace drake_haptics {
+namespace {
 
-class SupportedFacetEnumeration {
+class Enumeration {
  public:
-  SupportedFacetEnumeration(const PosedPair& pair, double floor,
-                            std::vector<DepthCandidate>* facets)
+  Enumeration(const PosedPair& pair, double floor,
+              std::vector<DepthCandidate>* facets)
       : pair_(pair), floor_(floor), facets_(*facets) {}
 
   void Run() {
@@ -122,16 +120,29 @@ class SupportedFacetEnumeration {
   std::vector<DepthCandidate>& facets_;
 };
 
-/// Lists all facets of A ⊖ B that both surfaces carry and whose gap exceeds
-/// `floor` (m), shallowest first.
-///
-/// Each original facet of a body faces the vertices of the other that support
-/// it; two original edges make a facet where their arcs on the Gauss map cross.
-/// Most pairs of edges cost two dot products.
-inline void ListSupportedFacetsByBruteForce(
-    const PosedPair& pair, double floor, std::vector<DepthCandidate>* facets) {
+}  // namespace
+
+Depth LeastOfAllFacets(const PosedPair& pair, const MinkowskiVertex& start,
+                       GlobalDepthState* state) {
+  const Depth local = WalkDepth(pair, start, SurfaceRule::kWholeBoundary,
+                                nullptr, {}, &state->walk);
+  const GlobalDepth found = FindGlobalDepth(pair, local, state);
+  if (found.status == GlobalDepthStatus::kFlat) return {};
+  Depth least{found.status == GlobalDepthStatus::kExact
+                  ? DepthStatus::kLocalMinimum
+                  : DepthStatus::kBounded,
+              found.facet, found.facet.h, found.vertex_pair};
+  const Vec3 n_B = pair.X_AB.R.transpose() * least.best.n;
+  least.best.support =
+      ClassifySupport(pair.A, least.best.feature_A, least.best.n, pair.B,
+                      least.best.feature_B, n_B);
+  return least;
+}
+
+void ListSupportedFacetsByBruteForce(const PosedPair& pair, double floor,
+                                     std::vector<DepthCandidate>* facets) {
   facets->clear();
-  SupportedFacetEnumeration(pair, floor, facets).Run();
+  Enumeration(pair, floor, facets).Run();
   std::sort(facets->begin(), facets->end(),
             [](const DepthCandidate& p, const DepthCandidate& q) {
               return p.h > q.h;
