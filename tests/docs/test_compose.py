@@ -53,8 +53,10 @@ def test_a_device_moves_a_body(tmp_path):
     """The ring of the first program, in the place of a tool."""
     until_plant = PROGRAMS[0].partition("rendering = ")[0]
     file = tmp_path / "driver.json"
-    with running(device_command(file), file) as driver:
-        part = textwrap.dedent(DEVICE).replace("7400", str(driver.port))
+    with running(device_command(file, "--ttl-ms", 1000), file) as driver:
+        # Its commands live long enough for a busy machine.
+        address = f"{driver.port}, ttl_s=1.0, hold_s=1.0"
+        part = textwrap.dedent(DEVICE).replace("7400", address)
         part = part.replace('"tool"', '"ring"').replace("60.0", "1.0")
         run_programs(tmp_path, [until_plant, part])
         figures = driver.end()
