@@ -211,24 +211,24 @@ def test_a_run_over_two_processes_replays_to_the_last_bit(tmp_path, monkeypatch)
     with running(
         device_command(figures, *options, scene="rubbed_sphere"), figures
     ) as driver:
-        # Its commands live long enough for a busy machine.
+        # A busy machine may be late with a command.
         monkeypatch.setattr(
             run_session,
             "open_device",
             lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=1.0, hold_s=1.0),
         )
-        run = ["run", "rubbed_sphere", "--headless", "--duration", "1.5"]
+        run = ["run", "rubbed_sphere", "--headless", "--duration", "4"]
         answer = invoke(*run, "--device", "udp://there", "--log", path)
         assert answer.exit_code == 0, answer.output
         driver.end()
     rows = read_tick_log(path).rows
-    assert len(rows) == 1500
+    assert len(rows) == 4000
     # Over a network readings come when they come, some twice or not at all.
     assert (rows["device_time_s"] > 0.0).all()
     assert (np.diff(rows["sequence"].astype(int)) >= 0).all()
     assert rows["contacts"].max() > 0
     answer = invoke("log", "replay", path)
-    assert "All 1,500 ticks are equal to the last bit." in answer.output
+    assert "All 4,000 ticks are equal to the last bit." in answer.output
 
 
 def test_a_recorded_handle_can_be_held(log, tmp_path):

@@ -54,7 +54,7 @@ def test_a_device_moves_a_body(tmp_path):
     until_plant = PROGRAMS[0].partition("rendering = ")[0]
     file = tmp_path / "driver.json"
     with running(device_command(file, "--ttl-ms", 1000), file) as driver:
-        # Its commands live long enough for a busy machine.
+        # A busy machine may be late with a command.
         address = f"{driver.port}, ttl_s=1.0, hold_s=1.0"
         part = textwrap.dedent(DEVICE).replace("7400", address)
         part = part.replace('"tool"', '"ring"').replace("60.0", "1.0")
