@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -106,8 +107,11 @@ class AutoDiffPoint:
 
 
 # Conversion both ways: `ToAutoDiffXd` of pydrake 1.51 refuses a system outside of a
-# diagram that converts one way only.
-@TemplateSystem.define("_Convertible_", T_list=[float, AutoDiffXd])
+# diagram that converts one way only. Without the scope, pydrake reads the source of the
+# whole stack to find this module.
+@TemplateSystem.define(
+    "_Convertible_", T_list=[float, AutoDiffXd], scope=sys.modules[__name__]
+)
 def _Convertible_(T: type) -> type:
     if T is float:
 
