@@ -16,8 +16,8 @@ from page_stamp import write_page
 from pair_peers import ours, with_coal, with_drake
 from pair_score import Library, Score, score_case
 
-DOCS = Path(__file__).parents[2] / "docs" / "verification" / "hard-cases.md"
-START, END = "<!-- table -->\n", "<!-- end of table -->\n"
+DOCS = Path(__file__).parents[2] / "docs" / "verification" / "numerics.md"
+START, END = "<!-- hard cases -->\n", "<!-- end of hard cases -->\n"
 LIBRARIES = {
     "tracked": Library(ours, is_tracked=True, is_warm=True),
     "global": Library(partial(ours, depth="global"), is_warm=True),

@@ -63,7 +63,7 @@ def _table(
 FIGURES = (
     _table("stability-theory", "boundary", 1),
     _table("verification/wrenches", "wrench", 1),
-    _table("verification/hard-cases", "hard_cases", 3),
+    _table("verification/numerics", "hard_cases", 3),
     _table("verification/continuity", "sliding", 2),
     _table("verification/contact-laws", "law", 4),
     _table("verification/contact-laws", "energy", 2),

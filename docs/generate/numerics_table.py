@@ -72,7 +72,7 @@ def _percent(rows: list[dict[str, str]], columns: list[str]) -> str:
 def summary_rows() -> Iterator[list[str]]:
     """Yields the table's rows, the first one its head."""
     yield HEAD
-    hard = "verification/hard-cases.md"
+    hard = "verification/numerics.md"
     cases = read_table(hard, "case")
     tracked = _find(hard, r"(\d+) are wrong with `depth: tracked`")
     least = _find(hard, r"and (\d+) with `depth: global`")
@@ -84,7 +84,7 @@ def summary_rows() -> Iterator[list[str]]:
         f" {_total(cases, 'coal: gross')} of them grossly; Drake"
         f" {_total(cases, 'Drake: wrong'):,},"
         f" {_total(cases, 'Drake: gross'):,} grossly",
-        "[hard cases](hard-cases.md)",
+        "[hard cases](#the-hard-cases-of-the-pair-query)",
     ]
     presses, gains_rows = read_rows(), read_gains()
     for gains, words in PRESSED.items():
