@@ -30,7 +30,7 @@ from shapes.organ import make_organ
 from drake_haptics import Mesh, decompose, load_mesh
 from drake_haptics.geometry.mesh.decimation import decimate
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "decomposition.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "geometry.md"
 # Table 1 of Kim, Otaduy, Lin and Manocha, for meshes of the same kind and size.
 PAPER = {"torus": 67, "cup": 190, "spoon": 78, "hammer": 425, "organ": 9913}
 PAPER |= {

@@ -78,7 +78,7 @@ FIGURES = (
         "verification/contact-laws", "press", 150, "--points", "1000", "--jobs", "2"
     ),
     _table("comparison", "thread", 3, timed=True),
-    _table("decomposition", "decomposition", 10, timed=True),
+    _table("geometry", "decomposition", 10, timed=True),
     _table("accuracy", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",

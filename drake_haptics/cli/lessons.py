@@ -209,7 +209,7 @@ DECOMPOSE = Lesson(
     ],
     exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; no file is left half written.",
     further="`run` cuts the meshes of a scene itself, and reuses stored results."
-    " docs/decomposition.md compares the methods.",
+    " docs/geometry.md compares the methods.",
 )
 
 STABILITY = Lesson(
