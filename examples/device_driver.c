@@ -7,7 +7,7 @@ cc -O2 -o device_driver device_driver.c -lm \
 
 /* It serves a handle of 0.2 kg that a hand holds by a spring, in three axes, at
  * 1 kHz, until it is interrupted. "VENDOR" marks the three places where a real
- * device's SDK is called instead; docs/connect-a-device.md names the calls. The
+ * device's SDK is called instead; docs/device-protocol.md names the calls. The
  * arguments are PORT and LONGEST_TIME_TO_LIVE_S, where others are wanted. */
 #define _POSIX_C_SOURCE 200809L
 

@@ -162,7 +162,7 @@ DEVICE = Lesson(
     ],
     exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}.",
     further="End either of the two, or pause `run` with Ctrl-Z, and watch the other."
-    " docs/connect-a-device.md shows how to write a driver for your own arm.",
+    " docs/device-protocol.md shows how to write a driver for your own arm.",
 )
 
 SCENES = Lesson(
