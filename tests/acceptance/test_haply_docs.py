@@ -1,4 +1,4 @@
-"""What docs/reference/haply.md shows runs, and its figures are those of the code."""
+"""What the docs show of Haply runs, and their figures are those of the code."""
 
 import inspect
 import re
@@ -8,9 +8,10 @@ from haply_service import HaplyService, Inverse3
 
 from drake_haptics.device.haply.haply_device import HaplyDevice
 
-TEXT = (Path(__file__).parents[2] / "docs" / "reference" / "haply.md").read_text(
+PAGE = (Path(__file__).parents[2] / "docs" / "connect-a-device.md").read_text(
     encoding="utf-8"
 )
+TEXT = re.split(r"(?m)^## ", PAGE[PAGE.index("## Haply Inverse3") :])[1]
 (SNIPPET,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 
@@ -20,7 +21,7 @@ def test_the_floor_holds_the_hand():
     with HaplyService({"049D": mass}) as service:
         assert "ws://127.0.0.1:10001" in SNIPPET
         code = SNIPPET.replace("ws://127.0.0.1:10001", service.uri)
-        exec(compile(code, "haply.md", "exec"), {"print": lambda *v: printed.append(v)})
+        exec(compile(code, "the page", "exec"), {"print": lambda *v: printed.append(v)})
     # On a computer that stalls, the gate may have ended the loop's force.
     ((gate, has_grip),) = printed
     assert gate in ("ACTIVE", "FAULT")

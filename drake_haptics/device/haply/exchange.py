@@ -1,6 +1,6 @@
 """The dialogue with Haply's Inverse Service: its JSON messages and our answers.
 
-Time is an argument, and nothing here opens a connection. docs/reference/haply.md
+Time is an argument, and nothing here opens a connection. docs/connect-a-device.md
 names the sources.
 """
 
