@@ -1,4 +1,4 @@
-"""docs/reference/lcm.md as two processes over UDP multicast, and what can go wrong."""
+"""The docs' device over LCM in two processes over multicast, and what can go wrong."""
 
 import os
 import re
@@ -16,9 +16,10 @@ from waiting import wait_until
 from drake_haptics.device.backend import DeviceCommand, Fault, GateState
 from drake_haptics.device.lcm.lcm_device import LcmDevice
 
-TEXT = (Path(__file__).parents[2] / "docs" / "reference" / "lcm.md").read_text(
+PAGE = (Path(__file__).parents[2] / "docs" / "connect-a-device.md").read_text(
     encoding="utf-8"
 )
+TEXT = PAGE[PAGE.index("## A device over LCM") :]
 DEVICE, HOST = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 
