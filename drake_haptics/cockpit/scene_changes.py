@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from typing import Any
 
 from drake_haptics.bounds.coupling import (
@@ -31,7 +30,7 @@ from drake_haptics.scene.schema import (
     Scene,
     ShadingParameters,
 )
-from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.scene.validation import warn_caller
 from drake_haptics.simulation.live_values import LiveKey, effect_keys, live_keys
 
 SCENE_VERBS = ("set", "choose", "effect", "reset")
@@ -275,7 +274,7 @@ class CouplingAdvice:
             device = make_simulated_device(scene, make_hand_path(scene.hand.path))
         except SceneError as error:
             words = f"the simulated hand cannot hold the handle: {error}"
-            warnings.warn(words, SceneWarning, stacklevel=2)
+            warn_caller(words)
         else:
             self._held = calc_scene_handle(scene, device)
 

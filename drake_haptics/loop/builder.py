@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +29,7 @@ from drake_haptics.loop.haptic_loop import HapticLoop
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.geometry import cut_scene
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
-from drake_haptics.scene.validation import SceneWarning, calc_skin_speed, check_values
+from drake_haptics.scene.validation import calc_skin_speed, check_values, warn_caller
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.load_shedding import LoadShedding, TickEnd, TickMeter
@@ -273,7 +272,7 @@ def _find_port(
     else:
         broken = check_real_coupling(scene) if device.shows_force else []
     for sentence in broken:
-        warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=3)
+        warn_caller(f"coupling.{sentence}")
     if device is not None:
         wait_for_reading(device)
     return port

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 
 from pydrake.geometry import Role, SceneGraph
@@ -36,7 +35,7 @@ from drake_haptics.scene.schema import (
     Effects,
     Material,
 )
-from drake_haptics.scene.validation import SceneWarning, check_rendering
+from drake_haptics.scene.validation import check_rendering, warn_caller
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 # Tick of effects with a memory, and longest step, for a plant without a time step, s.
@@ -209,7 +208,7 @@ def AddHapticRendering(
             rendering, contact, ordered, coupling, plant.time_step() or period_s
         ),
     ]:
-        warnings.warn(sentence, SceneWarning, stacklevel=2)
+        warn_caller(sentence)
     return rendering
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import math
+import warnings
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -43,6 +45,19 @@ _DEEP = 10.0
 
 class SceneWarning(UserWarning):
     """Warns of a scene that can be used but may not do what is wanted."""
+
+
+def warn_caller(sentence: str) -> None:
+    """Issues a `SceneWarning` that names the line which called this package.
+
+    Args:
+        sentence: Text of the warning.
+    """
+    package = __name__.partition(".")[0]
+    frame, level = inspect.currentframe(), 0
+    while frame and frame.f_globals.get("__name__", "").partition(".")[0] == package:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(sentence, SceneWarning, stacklevel=level + 1)
 
 
 def check_values(scene: Scene) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import math
 import time
-import warnings
 from collections.abc import Callable
 from contextlib import nullcontext
 
@@ -21,7 +20,7 @@ from drake_haptics.common.real_time import RealTimePacer, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.contact_law import question_overlap
-from drake_haptics.scene.validation import SceneWarning, question_depth
+from drake_haptics.scene.validation import question_depth, warn_caller
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.statistics import RunStatistics
 
@@ -152,7 +151,7 @@ def run(
         ask = _make_depth_question(haptic, simulator.get_context())
         question = ask(statistics.max_penetration_m)
         if question and not ask(before_m):
-            warnings.warn(question, SceneWarning, stacklevel=2)
+            warn_caller(question)
     return statistics
 
 

@@ -17,6 +17,7 @@ from drake_haptics import (
     SceneError,
     load_haptic_rendering_config,
 )
+from drake_haptics.scene.validation import SceneWarning
 
 YAML = """
 tool_body: tool
@@ -112,3 +113,16 @@ def test_a_wrong_role_is_named_in_code_too():
             scene.plant,
             scene.scene_graph,
         )
+
+
+def test_a_warning_names_the_line_of_the_caller():
+    scene = make_scene()
+    stiff = ContactParameters(stiffness_N_per_m=1e9)
+    with pytest.warns(SceneWarning, match="time_step") as caught:
+        ApplyHapticRenderingConfig(
+            HapticRenderingConfig(tool_body="tool", contact=stiff),
+            scene.builder,
+            scene.plant,
+            scene.scene_graph,
+        )
+    assert {warning.filename for warning in caught} == {__file__}
