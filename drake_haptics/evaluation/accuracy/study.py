@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, replace
 from subprocess import SubprocessError
+from time import monotonic
 from typing import Any
 
 from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
@@ -155,8 +156,8 @@ def list_timing_tasks(
     """
     return [
         make_task(what, setting, machine=machine)
-        for what in ("native", "ticks")
         for setting in settings
+        for what in ("native", "ticks")
     ]
 
 
@@ -255,15 +256,29 @@ class _Stage:
     shares: tuple[float, float]
 
     def make_progress(self, report: Progress) -> Callable[[int, int], None]:
-        """Returns a callback that reports the progress of the tasks and of all work."""
+        """Returns a callback that reports the progress of the tasks and of all work.
+
+        Once a task is done, it says how long the rest of them will take.
+        """
         begin, end = self.shares
+        steps: list[tuple[float, int]] = []
 
         def progress(done: int, total: int) -> None:
-            if total:
-                share = begin + (end - begin) * done / total
-                report(f"{self.what}: {done} of {total}", share)
+            if not total:
+                return
+            what = f"{self.what}: {done} of {total}"
+            steps.append((monotonic(), done))
+            (began_s, first), (now_s, _) = steps[0], steps[-1]
+            if first < done < total:
+                left_s = (now_s - began_s) / (done - first) * (total - done)
+                what += f", about {_describe_duration(left_s)} left"
+            report(what, begin + (end - begin) * done / total)
 
         return progress
+
+
+def _describe_duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
 def run_accuracy_study(

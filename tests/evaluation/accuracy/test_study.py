@@ -2,12 +2,14 @@
 
 import json
 from concurrent.futures import ThreadPoolExecutor
+from itertools import count
 
 import pytest
 from box_scenes import over_a_plate
 
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.evaluation.accuracy import study as study_module
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS
 from drake_haptics.evaluation.accuracy.setting import Setting
@@ -127,6 +129,20 @@ def test_tells_how_far_it_is(scene):
     assert shares[0] == 0.0 and shares[-1] == 1.0
     assert told[0][0] == "recording the motion"
     assert told[-1][0].startswith("times: ")
+
+
+def test_tells_how_long_the_rest_of_a_stage_will_take(scene, monkeypatch):
+    """By a clock that a test moves by 40 s for each task."""
+    monkeypatch.setattr(study_module, "monotonic", count(0.0, 40.0).__next__)
+    told = []
+    _study(scene, progress=lambda what, share: told.append(what))
+    assert [what for what in told if what.startswith("errors")] == [
+        "errors: 0 of 4",
+        "errors: 1 of 4, about 2 min left",
+        "errors: 2 of 4, about 80 s left",
+        "errors: 3 of 4, about 40 s left",
+        "errors: 4 of 4",
+    ]
 
 
 def test_without_valgrind_it_says_so_at_once(scene, monkeypatch):
