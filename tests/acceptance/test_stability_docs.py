@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
+from drake_haptics.scene.validation import SceneWarning
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "stability.md").read_text(encoding="utf-8")
-COUPLING, SCENE, DIAGRAM, *_ = (
+COUPLING, SCENE, PLANT, *_ = (
     textwrap.dedent(snippet)
     for snippet in re.findall(r"(?ms)^ *```python\n(.*?)^ *```$", TEXT)
 )
@@ -53,11 +54,15 @@ def test_what_a_tick_of_delay_and_the_rate_give():
     assert stiffest(5e-4, 1) == pytest.approx(2.0 * stiffest(1e-3, 1))
 
 
-def test_any_diagram(capsys):
-    radius, slowest = run(DIAGRAM, capsys)
-    # Colgate and Schenkel's 2 b/T is 1000 N/m here: 900 is just stable.
-    assert 0.999 < float(radius.split()[-1]) < 1.0
-    assert slowest.startswith("15.1 Hz") or slowest.startswith("15 Hz")
+def test_a_plant_of_your_own(capsys):
+    """An explicit step holds 4 m/h², 400,000 N/m here, less what damping takes."""
+    (mode,) = run(PLANT, capsys)
+    assert "dies out in" in mode
+    (mode,) = run(PLANT.replace("2e3", "3.8e5"), capsys)
+    assert "dies out in" in mode
+    with pytest.warns(SceneWarning, match="time_step"):
+        least_stable, *_ = run(PLANT.replace("2e3", "4.1e5"), capsys)
+    assert "unstable" in least_stable
 
 
 @pytest.mark.parametrize("name", re.findall(r"`((?:docs|tests)/[\w/]+\.py)`", TEXT))
