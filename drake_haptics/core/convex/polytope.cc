@@ -143,7 +143,7 @@ void AddFansAndRings(Polytope* P) {
   }
 }
 
-void AddBallAndBox(Polytope* P) {
+void AddBallsAndBox(Polytope* P) {
   // Divided first, so that the sum of huge coordinates cannot overflow.
   for (const Vec3& v : P->vertices) P->centroid += v / P->num_vertices();
   for (const Vec3& v : P->vertices) {
@@ -153,6 +153,16 @@ void AddBallAndBox(Polytope* P) {
   for (const Vec3& v : P->vertices) {
     P->low = P->low.cwiseMin(v);
     P->high = P->high.cwiseMax(v);
+  }
+  if (P->dimension < 3) return;
+  // Corners of a facet may lie below its plane, within the tolerance.
+  P->inner_radius = P->radius;
+  for (int f = 0; f < static_cast<int>(P->facets.size()); ++f) {
+    for (const int v : P->loop_of(f)) {
+      const double height =
+          P->facets[f].normal.dot(P->vertices[v] - P->centroid);
+      P->inner_radius = std::clamp(height, 0.0, P->inner_radius);
+    }
   }
 }
 
@@ -167,7 +177,7 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddWings(&P);
   AddFansAndRings(&P);
   FillHiddenEdges(&P);
-  AddBallAndBox(&P);
+  AddBallsAndBox(&P);
   FillGaussAngleBounds(&P);
   FillEdgeNormalArcs(&P);
   return P;

@@ -97,6 +97,8 @@ struct Polytope {
 
   Vec3 centroid = Vec3::Zero();  ///< mean of the vertices
   double radius = 0;  ///< radius of the bounding ball about the centroid, m
+  double inner_radius =
+      0;  ///< of a ball about the centroid that it contains, m
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< corners of the box, m
 
   int num_vertices() const { return static_cast<int>(vertices.size()); }

@@ -78,16 +78,19 @@ class Query {
                : last.facet.h < 0;
   }
 
-  // Whether the origin is in the pyramid over a facet of A ⊖ B with its apex at
-  // the difference of the centroids: then the pair overlaps. The line from the
-  // apex through the origin must meet the facet.
+  // Whether the origin is in the hull of a facet of A ⊖ B and the difference of
+  // the inner balls: then the pair overlaps. The line from a point of that ball
+  // through the origin must meet the facet.
   bool IsUnderFacet(const Depth& depth) const {
     const Vec3& n = depth.best.n;
-    const Vec3 apex = pair_.A.centroid - pair_.X_AB * pair_.B.centroid;
-    const double behind = n.dot(apex);
-    const double aside = (apex - behind * n).norm();
-    return depth.best.h < -kLayerShare * pair_.scale() && behind > 0 &&
-           depth.clearance * behind > -depth.best.h * aside;
+    const Vec3 center = pair_.A.centroid - pair_.X_AB * pair_.B.centroid;
+    const double radius = pair_.A.inner_radius + pair_.B.inner_radius;
+    const double behind = n.dot(center);
+    const double aside = (center - behind * n).norm() - radius;
+    return depth.best.h < -kLayerShare * pair_.scale() &&
+           (center.squaredNorm() < radius * radius ||
+            (behind > 0 && depth.clearance > 0 &&
+             depth.clearance * behind > -depth.best.h * aside));
   }
 
   // After answers without a search, one starts from the last features.

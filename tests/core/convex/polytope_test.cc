@@ -99,10 +99,21 @@ void CheckWings(const Polytope& P) {
   }
 }
 
+// The inner ball touches a facet's plane and crosses none.
+void CheckInnerBall(const Polytope& P) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Polytope::Facet& facet : P.facets) {
+    least = std::min(least, facet.offset - facet.normal.dot(P.centroid));
+  }
+  CHECK(std::abs(least - P.inner_radius) <= 1e-12 * P.radius);
+  CHECK(P.dimension < 3 || P.inner_radius > 0);
+}
+
 void CheckAdjacency(const Polytope& P) {
   CheckLoops(P);
   CheckNeighbors(P);
   if (P.dimension >= 2) CheckWings(P);
+  if (P.dimension >= 2) CheckInnerBall(P);
 }
 
 void Solids() {
