@@ -75,24 +75,23 @@ class Overlay {
   }
 
   void AddEdgePairs() {
-    std::vector<int>& arcs_B = workspace_.arcs_B;
-    std::vector<Vec3>& edges_B = workspace_.edges_B;
-    arcs_B.clear();
-    edges_B.clear();
-    for (std::size_t j = 0; j < fan_B_.size(); ++j) {
-      if (!ArcMayExceed(workspace_.gaps_B, j)) continue;
-      arcs_B.push_back(static_cast<int>(j));
-      edges_B.push_back(pair_.X_AB.R * fan_B_[j].along);
-    }
-    if (arcs_B.empty()) return;
+    if (fan_B_.empty()) return;  // a point
     for (std::size_t i = 0; i < fan_A_.size(); ++i) {
       if (!ArcMayExceed(workspace_.gaps_A, i)) continue;
       const Vec3 edge_A_in_B = pair_.X_AB.R.transpose() * fan_A_[i].along;
-      for (std::size_t j = 0; j < arcs_B.size(); ++j) {
-        if (ArcMayCross(pair_.B, fan_B_, arcs_B[j], edge_A_in_B) &&
-            ArcMayCross(pair_.A, fan_A_, i, edges_B[j])) {
-          AddEdgePair(fan_A_[i], fan_B_[arcs_B[j]], edges_B[j]);
+      double right = edge_A_in_B.dot(fan_B_.back().normal);
+      for (std::size_t j = 0; j < fan_B_.size(); ++j) {
+        const double left = edge_A_in_B.dot(fan_B_[j].normal);
+        if (MayCross(pair_.B, left, right) &&
+            ArcMayExceed(workspace_.gaps_B, j)) {
+          const Vec3 edge_B = pair_.X_AB.R * fan_B_[j].along;
+          const std::size_t before = Before(i, fan_A_.size());
+          if (MayCross(pair_.A, edge_B.dot(fan_A_[i].normal),
+                       edge_B.dot(fan_A_[before].normal))) {
+            AddEdgePair(fan_A_[i], fan_B_[j], edge_B);
+          }
         }
+        right = left;
       }
     }
   }
@@ -127,13 +126,10 @@ class Overlay {
            gaps[Before(k, gaps.size())] > floor_;
   }
 
-  // Whether the arc of a fan's edge may meet the great circle of directions
-  // perpendicular to `axis`. The arc of a segment is a whole circle.
-  static bool ArcMayCross(const Polytope& P, Fan fan, std::size_t k,
-                          const Vec3& axis) {
-    if (fan[k].facet < 0) return true;
-    const double left = axis.dot(fan[k].normal);
-    const double right = axis.dot(fan[Before(k, fan.size())].normal);
+  // Whether the arc between two facets' normals may meet the great circle of
+  // directions perpendicular to an axis, from the products of the axis with
+  // them. Both are zero on a segment, whose arc is a whole circle.
+  static bool MayCross(const Polytope& P, double left, double right) {
     const double slack = kRegionSlack * P.radius;
     return (left <= slack && right >= -slack) ||
            (left >= -slack && right <= slack);

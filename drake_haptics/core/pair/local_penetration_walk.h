@@ -62,8 +62,6 @@ struct DepthWorkspace {
   std::vector<DepthCandidate> candidates;
   std::vector<int> closed;
   std::vector<double> gaps_A, gaps_B;
-  std::vector<int> arcs_B;
-  std::vector<Vec3> edges_B;
 };
 
 /// Walks on the surface of A ⊖ B from a vertex pair to a locally
