@@ -43,25 +43,25 @@ class Query {
   // Under coherent motion the last features are mostly still the answer, and
   // one comparison proves it.
   PairContact Answer() {
-    const Revisit last = RevisitLast();
-    if (last.status == RevisitStatus::kMinimum && IsApart(last.facet.h)) {
-      state_.vertex_pair = last.vertex_pair;
+    last_ = RevisitLast();
+    if (last_.status == RevisitStatus::kMinimum && IsApart(last_.facet.h)) {
+      state_.vertex_pair = last_.vertex_pair;
       state_.is_apart = true;
       state_.simplex.size = 0;
-      return ContactAtFacet(pair_, last.facet, ContactStatus::kNear);
+      return ContactAtFacet(pair_, last_.facet, ContactStatus::kNear);
     }
-    if (MayOverlap(last) && IsUnderFacet(LocalDepth(last))) {
-      return AtFacet(FindDepth(last));
+    if (MayOverlap() && IsUnderFacet(LocalDepth())) {
+      return AtFacet(FindDepth());
     }
     if (state_.simplex.size == 0 && !state_.feature_A.is_none()) StartAtLast();
-    if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth(last));
+    if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth());
     const Separation separation =
         ComputeSeparation(pair_, state_.simplex, kInfinity);
     state_.simplex = separation.simplex;
     const bool is_apart = separation.status == SeparationStatus::kApart;
     return is_apart && !AreBothWanted(pair_, separation)
                ? Apart(separation)
-               : Touching(separation, last, is_apart);
+               : Touching(separation, is_apart);
   }
 
   Revisit RevisitLast() const {
@@ -72,10 +72,11 @@ class Query {
   }
 
   // Whether a walk from the last facet is worth its time.
-  bool MayOverlap(const Revisit& last) const {
-    return last.status == RevisitStatus::kGone
-               ? !state_.is_apart && !state_.feature_A.is_none()
-               : last.facet.h < 0;
+  bool MayOverlap() const {
+    if (last_.status != RevisitStatus::kGone) return last_.facet.h < 0;
+    const auto& [a, b] = state_.vertex_pair;
+    return !state_.feature_A.is_none() &&
+           (!state_.is_apart || state_.n.dot(pair_.a(a) - pair_.b(b)) < 0);
   }
 
   // Whether the origin is in the hull of a facet of A ⊖ B and the difference of
@@ -111,9 +112,8 @@ class Query {
   }
 
   // The pair overlaps, or is so little apart that both answers are needed.
-  PairContact Touching(const Separation& separation, const Revisit& last,
-                       bool is_apart) {
-    const Depth depth = FindDepth(last);
+  PairContact Touching(const Separation& separation, bool is_apart) {
+    const Depth depth = FindDepth();
     const bool has_facet = depth.status != DepthStatus::kNoFacet;
     if (is_apart) {
       MinkowskiVertex vertex_pair = separation.simplex.vertex_pairs[0];
@@ -164,8 +164,8 @@ class Query {
     contact->p_b = separation.p_a - contact->distance * contact->n;
   }
 
-  Depth FindDepth(const Revisit& last) {
-    const Depth& local = LocalDepth(last);
+  Depth FindDepth() {
+    const Depth& local = LocalDepth();
     if (global_ == nullptr || local.status == DepthStatus::kNoFacet) {
       return local;
     }
@@ -177,21 +177,21 @@ class Query {
             least.facet, least.facet.h, least.vertex_pair};
   }
 
-  const Depth& LocalDepth(const Revisit& last) {
-    if (!local_) local_ = FindLocalDepth(last);
+  const Depth& LocalDepth() {
+    if (!local_) local_ = FindLocalDepth();
     return *local_;
   }
 
   // Bodies that were apart enter through the facet that their closest features
   // span.
-  Depth FindLocalDepth(const Revisit& last) {
-    if (last.status == RevisitStatus::kMinimum) {
-      return {DepthStatus::kLocalMinimum, last.facet, last.facet.h,
-              last.vertex_pair, last.clearance};
+  Depth FindLocalDepth() {
+    if (last_.status == RevisitStatus::kMinimum) {
+      return {DepthStatus::kLocalMinimum, last_.facet, last_.facet.h,
+              last_.vertex_pair, last_.clearance};
     }
-    if (last.status == RevisitStatus::kFacet) {
-      return WalkDepth(pair_, last.vertex_pair, SurfaceRule::kWholeBoundary,
-                       &last, kNoPromotion, &workspace_.depth);
+    if (last_.status == RevisitStatus::kFacet) {
+      return WalkDepth(pair_, last_.vertex_pair, SurfaceRule::kWholeBoundary,
+                       &last_, kNoPromotion, &workspace_.depth);
     }
     if (state_.is_apart || state_.feature_A.is_none()) return FindColdDepth();
     MinkowskiVertex vertex_pair = state_.vertex_pair;
@@ -211,6 +211,12 @@ class Query {
   void Center(PairContact* contact) {
     const double layer = kLayerShare * pair_.scale();
     contact->extent = layer * layer;
+    // In most ticks the revisit has seen all around the last features fall
+    // away.
+    if (contact->feature_A == last_.facet.feature_A &&
+        contact->feature_B == last_.facet.feature_B && last_.reach < -layer) {
+      return;
+    }
     if (!MayHaveExtent(pair_, contact->n, state_.vertex_pair, layer)) return;
     const PressurePatch patch = FindPressurePatch(
         pair_, contact->n, contact->distance, state_.vertex_pair, contact->p_a,
@@ -226,6 +232,7 @@ class Query {
   PairState& state_;
   PairWorkspace& workspace_;
   GlobalDepthState* const global_;  // null where the depth is tracked
+  Revisit last_;                    // the last features, at this pose
   std::optional<Depth> local_;      // once it was wanted
 };
 

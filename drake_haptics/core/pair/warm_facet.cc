@@ -13,11 +13,12 @@
 namespace drake_haptics {
 namespace {
 
-// Reach, m, of the neighbors of vertex v of P beyond it along a direction; for
-// neighbors across a facet, less its unevenness.
-double Reach(const Polytope& P, int v, const Vec3& direction) {
+// Reach, m, of the neighbors of vertex v of P beyond it along a direction, but
+// for the neighbor along `edge`; for those across a facet, less its unevenness.
+double Reach(const Polytope& P, int v, const Vec3& direction, int edge = -1) {
   double reach = -std::numeric_limits<double>::infinity();
   for (const Polytope::OneRingEntry& ring_entry : P.fan_of(v)) {
+    if (ring_entry.edge == edge) continue;
     reach = std::max(reach, direction.dot(ring_entry.along));
   }
   for (const Polytope::HiddenEdge& edge : P.hidden_of(v)) {
@@ -83,6 +84,7 @@ void Judge(const Polytope& P, int facet, const Polytope& Q, int v,
     clearance = std::min(clearance, Clearance(P, k, point_P));
   }
   result->clearance = clearance;
+  result->reach = reach;
   const double depth = -result->facet.h;
   double needed = depth * P.facets[facet].turn;
   bool is_minimum = IsFar(clearance, needed);
@@ -150,11 +152,11 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
   if (!(length > kParallelSine * length_A * length_B)) return {};
   const Vec3 n = cross * ((cross.dot(n_last) < 0 ? -1.0 : 1.0) / length);
   // n is perpendicular to both edges, so one end stands for the whole edge.
-  if (!IsFarthest(pair.A, edge_A.v0, -n, kRegionSlack * pair.A.radius) ||
-      !IsFarthest(pair.B, edge_B.v0, pair.X_AB.R.transpose() * n,
-                  kRegionSlack * pair.B.radius)) {
-    return {};
-  }
+  const double reach_A = Reach(pair.A, edge_A.v0, -n, a.index());
+  if (reach_A > kRegionSlack * pair.A.radius) return {};
+  const double reach_B =
+      Reach(pair.B, edge_B.v0, pair.X_AB.R.transpose() * n, b.index());
+  if (reach_B > kRegionSlack * pair.B.radius) return {};
   const Vec3 between = start_B - start_A;
   const double h = -n.dot(between);
   const double scale = length * length;
@@ -168,18 +170,13 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
       {clearance_A[0], clearance_A[1], clearance_B[0], clearance_B[1]});
   Revisit result = Start(pair, rule, h, n, a, b, {edge_A.v0, edge_B.v0});
   result.clearance = clearance;
+  result.reach = std::max(reach_A, reach_B);
   // If one body lies flush, only the other one bounds the turn.
-  const Vec3 n_B = pair.X_AB.R.transpose() * n;
   const double needed_A = -h * edge_A.turn, needed_B = -h * edge_B.turn;
-  const bool is_far_A = IsFar(clearance, needed_A);
-  const bool is_far_B = IsFar(clearance, needed_B);
-  const bool is_edge_A = WidestSupport(pair.A, a, -n) == a;
-  if (is_far_A && is_edge_A) {
-    result.status = RevisitStatus::kMinimum;
-    return result;
-  }
-  const bool is_edge_B = WidestSupport(pair.B, b, n_B) == b;
-  if (is_far_B && is_edge_B) {
+  const bool is_edge_A = reach_A < -kFlushSlack * pair.A.radius;
+  const bool is_edge_B = reach_B < -kFlushSlack * pair.B.radius;
+  if ((is_edge_A && IsFar(clearance, needed_A)) ||
+      (is_edge_B && IsFar(clearance, needed_B))) {
     result.status = RevisitStatus::kMinimum;
     return result;
   }

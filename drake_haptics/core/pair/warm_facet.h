@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "base/types.h"
 #include "convex/support.h"
@@ -21,6 +22,9 @@ struct Revisit {
   MinkowskiVertex vertex_pair;  ///< one vertex pair of the facet
   /// Least distance of the origin's foot from the rim, m; negative outside.
   double clearance = -1;
+  /// How far (m) the neighbors of the facet's vertex, or of both edges' ends,
+  /// rise above its plane; negative if all fall away.
+  double reach = std::numeric_limits<double>::infinity();
   /// Vertex pairs of the facet around which the proof does not exclude a
   /// shallower one. Around all of them if there is no list.
   std::array<MinkowskiVertex, 4> open;
