@@ -221,7 +221,9 @@ def test_friction_stores_little_and_takes_the_rest(rich):
 
 def test_braking_only_takes(rich):
     books = rich.books["braking"]
-    assert books["lost"] == books["damped"] > 0.0
+    # Two sums of the same 700 terms, in another order.
+    assert books["lost"] == pytest.approx(books["damped"], rel=700 * 2.2e-16)
+    assert books["damped"] > 0.0
     assert books["created"] == books["stored"] == 0.0
 
 
