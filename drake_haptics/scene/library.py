@@ -27,12 +27,18 @@ def find_scene(name_or_path: str) -> Path:
     """Returns the file of a shipped scene's name, or the path itself.
 
     Raises:
-        SceneError: There is no such scene or file; the message lists the shipped names.
+        SceneError: There is no such scene or file, or it is a mesh or a program; the
+            message lists the shipped names.
     """
     if Path(name_or_path).suffix.lower() in _MESH_SUFFIXES:
         raise SceneError(
             f"{name_or_path} is a mesh, not a scene: `drake-haptics run --tool MESH"
             " --environment MESH` takes meshes, and a scene file names them"
+        )
+    if Path(name_or_path).suffix == ".py":
+        raise SceneError(
+            f"{name_or_path} is a program, not a scene: commands take scenes; in a"
+            " program of your own call drake_haptics.analysis (docs/stability.md)"
         )
     return _find("scene", name_or_path, list_scenes(), SceneError)
 

@@ -144,6 +144,7 @@ def test_a_scene_file_that_is_none(folder, old, new, words):
         ("cup_spon", ["did you mean 'cup_spoon'?", *list_scenes()]),
         ("sceme.yaml", ["no such file", "did you mean 'scene.yaml'?"]),
         ("tool.obj", ["is a mesh, not a scene", "--tool"]),
+        ("plant.py", ["is a program, not a scene", "docs/stability.md"]),
     ],
 )
 def test_a_scene_that_is_not_there(scene, words):
