@@ -52,12 +52,12 @@ def describe_verdict(stability: SceneStability) -> str:
             f" each tick: {describe_motion(stability.modes[0])}."
         )
     if stability.is_passive:
-        second = "Passive: no hand can be driven into vibration."
+        second = "Passive: no hand can make the device vibrate."
     else:
         second = (
             f"Not passive: {_percent(float(stability.damping_usage.max()))} of the"
             " damping of device and hand would be needed, so that some other hand may"
-            " be driven into vibration."
+            " make the device vibrate."
         )
     return f"{_describe_nearest_limit(stability.limits)} {second}"
 

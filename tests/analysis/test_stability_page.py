@@ -48,7 +48,7 @@ def test_a_stable_and_passive_scene(sample):
     assert describe_verdict(sample) == (
         "Stable. The limit of the coupling's stiffness of translation is 16744 N/m"
         " against a rigid wall; the scene has 800 N/m, a margin of 20.9. Passive:"
-        " no hand can be driven into vibration."
+        " no hand can make the device vibrate."
     )
 
 
