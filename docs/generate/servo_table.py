@@ -34,16 +34,15 @@ from solved_wall import (
     find_largest_stiffness,
 )
 
+from drake_haptics.common.colors import FORCE_INK, HANDLE_GHOST
+
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "servo.md"
-MAP = _DOCS / "servo.png"
 TRACES = _DOCS / "servo_stall.png"
-RATES_HZ = (100, 250, 500, 1000)
-STALLS_S = (0.0, 0.02, 0.05, 0.121, 0.2)
 STIFFNESSES = (250, 500, 1000, 1500, 2000, 3000)
 HANDS = {"nobody holds it": None, "nominal hand": NOMINAL_HAND}
-# Below this nothing is felt: a tenth of a millimeter; a twentieth of a newton.
-BUZZ_M, STALE_N = 1e-4, 0.05
+# Below this nothing is felt.
+BUZZ_M = 1e-4
 WILD_M = 0.02
 
 
@@ -121,58 +120,18 @@ def with_tables(page: str) -> str:
     return page
 
 
-def draw_map() -> None:
-    """Draws buzz and stale force over rate, stall, stiffness and scheme."""
-    from matplotlib import pyplot
-    from matplotlib.colors import LogNorm
-
-    figure, axes = pyplot.subplots(
-        len(SCHEMES), 2 * len(STALLS_S), figsize=(14.0, 7.0), sharex=True, sharey=True
-    )
-    for column, (name, hand, stall_s) in enumerate(
-        (name, hand, stall_s) for name, hand in HANDS.items() for stall_s in STALLS_S
-    ):
-        for axis, scheme in zip(axes[:, column], SCHEMES, strict=True):
-            runs = [
-                [simulate(scheme, K, hz, stall_s, hand=hand) for hz in RATES_HZ]
-                for K in STIFFNESSES
-            ]
-            buzz = np.array([[run.calc_buzz() for run in row] for row in runs])
-            stale = np.array([[run.calc_stale_force() for run in row] for row in runs])
-            image = axis.imshow(
-                1e3 * buzz.clip(1e-5),
-                origin="lower",
-                aspect="auto",
-                norm=LogNorm(1e-2, 1e2),
-                cmap="YlOrRd",
-            )
-            rows, columns = np.nonzero(stale > STALE_N)
-            axis.plot(columns, rows, "x", color="tab:blue", markersize=7)
-            axis.set_xticks(range(len(RATES_HZ)), RATES_HZ, rotation=90)
-            axis.set_yticks(range(len(STIFFNESSES)), STIFFNESSES)
-        axes[0, column].set_title(f"{name}\nstall {1e3 * stall_s:.0f} ms", fontsize=9)
-        print(f"  {name}, stall {1e3 * stall_s:.0f} ms", file=sys.stderr)
-    for axis, scheme in zip(axes[:, 0], SCHEMES, strict=True):
-        axis.set_ylabel(f"{scheme.name}\nK, N/m")
-    for axis in axes[-1]:
-        axis.set_xlabel("loop, Hz")
-    figure.tight_layout(rect=(0.0, 0.0, 0.93, 1.0))
-    bar = figure.colorbar(image, cax=figure.add_axes((0.94, 0.15, 0.012, 0.7)))
-    bar.set_label("buzz, mm peak to peak; ×: a stale force stays")
-    figure.savefig(MAP, dpi=110)
-
-
 def draw_traces() -> None:
     """Draws one stall in a nominal hand that presses on a wall."""
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(2, 4, figsize=(12.0, 4.8), sharex=True, sharey="row")
+    figure, axes = pyplot.subplots(2, 4, figsize=(8.0, 4.2), sharex=True, sharey="row")
     for column, scheme in zip(axes.T, SCHEMES, strict=True):
         run = simulate(scheme, 1500, 100, 0.121, hand=NOMINAL_HAND)
         shown = (run.time_s >= 1.8) & (run.time_s < 2.6)
-        for axis, values in zip(column, (1e3 * run.x_m, run.force_N), strict=True):
+        drawn = ((1e3 * run.x_m, HANDLE_GHOST[:3]), (run.force_N, FORCE_INK))
+        for axis, (values, color) in zip(column, drawn, strict=True):
             axis.axvspan(2.0, 2.121, color="0.85")
-            axis.plot(run.time_s[shown], values[shown], linewidth=0.9)
+            axis.plot(run.time_s[shown], values[shown], color=color, linewidth=0.9)
         column[0].set_title(scheme.name)
         column[1].set_xlabel("time, s")
     axes[0, 0].set_ylabel("handle, mm into the wall")
@@ -189,7 +148,6 @@ def main() -> None:
         write_page(PAGE, page, __file__)
         matplotlib.use("Agg")
         draw_traces()
-        draw_map()
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ from drake_haptics.bounds.sampled_spring import (
     calc_passive_stiffness,
     calc_stable_stiffness,
 )
+from drake_haptics.common.colors import EIGENVALUE, FORMULA, INKS
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.report.plain_data import to_plain_data
@@ -52,10 +53,10 @@ def plot_axis_design(
     B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
     free = make_wall(device, AxisHand(), period_s, delay_s)
     stable = [calc_largest_stiffness(replace(free, wall_damping=b)) for b in B]
-    axes.fill_between(B, stable, color="C0", alpha=0.15)
-    axes.plot(B, stable, color="C0", label="stable, let go (exact)")
+    axes.fill_between(B, stable, color=EIGENVALUE, alpha=0.15)
+    axes.plot(B, stable, color=EIGENVALUE, label="stable, let go (exact)")
     law = [calc_stable_stiffness(device.damping, b, period_s, delay_s) for b in B]
-    axes.plot(B, law, "--", color="C0", lw=1.0, label="law of Gil et al.")
+    axes.plot(B, law, "--", color=FORMULA, lw=1.0, label="law of Gil et al.")
     passive = [
         (m, calc_passive_stiffness(m.held_damping, 0.0, period_s, delay_s))
         for m in design.margins
@@ -68,19 +69,21 @@ def plot_axis_design(
         if margins.held_damping > 0.02 * B[-1]
         and B[-1] / margins.held_damping + top / K > 1.0
     ]
-    for i, (margins, K) in enumerate(visible, start=1):
+    for i, (margins, K) in enumerate(visible):
         axes.plot(
             [0.0, margins.held_damping],
             [K, 0.0],
             ":",
-            color=f"C{i + (i > 2)}",
+            color=INKS[i % len(INKS)],
             label=f"passive below, grip '{margins.grip}'",
         )
     if device.rated_stiffness is not None:
         axes.axhline(device.rated_stiffness, color="0.7", lw=0.8, label="rated")
     if device.rated_damping is not None:
         axes.axvline(device.rated_damping, color="0.7", lw=0.8)
-    axes.plot(design.damping, design.stiffness, "o", color="C3", label="suggested")
+    axes.plot(
+        design.damping, design.stiffness, "*", ms=12, color="black", label="suggested"
+    )
     axes.set_xlim(0.0, B[-1])
     axes.set_ylim(0.0, top)
     axes.set_xlabel(f"damping, {units[1]}")

@@ -26,6 +26,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from drake_haptics.analysis.plot_axes import find_axes
+from drake_haptics.common.colors import INKS
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.report.plain_data import to_plain_data
@@ -72,12 +73,11 @@ class ExactBoundary:
         axes = find_axes(axes)
         d = self.delay_samples
         label = f"{d} period{'' if d == 1 else 's'} of delay"
-        (line,) = axes.plot(self.beta, self.alpha, label=label)
-        axes.plot(self.peak.beta, self.peak.alpha, "o", color=line.get_color())
+        ink = INKS[d % len(INKS)]
+        axes.plot(self.beta, self.alpha, color=ink, label=label)
+        axes.plot(self.peak.beta, self.peak.alpha, "o", color=ink)
         reach = self.peak.alpha * (0.5 + d)
-        axes.plot(
-            [0.0, reach], [0.0, self.peak.alpha], ":", lw=1.0, color=line.get_color()
-        )
+        axes.plot([0.0, reach], [0.0, self.peak.alpha], ":", lw=1.0, color=ink)
         axes.set_xlabel("damping β = B T/m")
         axes.set_ylabel("stiffness α = K T²/m")
         axes.legend()

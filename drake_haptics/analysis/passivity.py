@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
@@ -27,6 +28,7 @@ from scipy.optimize import minimize_scalar
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.plot_axes import find_axes
+from drake_haptics.common.colors import INKS, PASSIVITY
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
 
@@ -218,10 +220,15 @@ class Passivity:
             available: Available damping, N·s/m, by name: "device", "device and hand".
         """
         axes = find_axes(axes)
-        axes.plot(self.frequencies_Hz, self.required_damping, label="required")
-        axes.plot(self.worst_frequency_Hz, self.worst_damping, "o", color="C0")
-        for i, (name, damping) in enumerate((available or {}).items(), start=1):
-            axes.axhline(damping, ls="--", color=f"C{i}", label=name)
+        axes.plot(
+            self.frequencies_Hz,
+            self.required_damping,
+            color=PASSIVITY,
+            label="required",
+        )
+        axes.plot(self.worst_frequency_Hz, self.worst_damping, "o", color=PASSIVITY)
+        for ink, (name, damping) in zip(cycle(INKS), (available or {}).items()):
+            axes.axhline(damping, ls="--", color=ink, label=name)
         axes.set_xlim(0.0, self.frequencies_Hz[-1])
         axes.set_xlabel("frequency, Hz")
         axes.set_ylabel("damping, N·s/m or N·m·s/rad")
