@@ -153,5 +153,5 @@ class ChangeLog(_LineWriter):
         # The loop goes on without its reader; rich would end the program.
         with suppress(OSError, SystemExit):
             for line in iter(self._lines.get, None):
-                self._console.print(line)
+                self._console.print(line, soft_wrap=True)
                 self._console.file.flush()

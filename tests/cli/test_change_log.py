@@ -29,6 +29,11 @@ def test_each_change_is_a_line_with_its_time():
     ]
 
 
+def test_a_long_change_is_not_broken():
+    words = "WAITING: lead the handle to where the tool can follow; Enter shows it now"
+    assert note([words], terminal=False) == f"     1.0 s  {words}\n"
+
+
 def test_a_terminal_has_its_line_that_changes():
     assert note(["IDLE", "ACTIVE"], terminal=True) == ""
 
