@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack, closing
 
-from library_counts import count_by_library, run_benchmark
+from library_counts import count_parts, run_benchmark
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit import cockpit
@@ -72,8 +72,8 @@ def run_counted(name: str, kind: str) -> None:
 def print_counts(scene: str) -> None:
     """Prints the instructions of a tick with the cockpit, and what it adds."""
     without, with_cockpit = (
-        sum(count_by_library([__file__, scene, kind]).values()) / _TICKS
-        for kind in _KINDS
+        sum(counts.values()) / _TICKS
+        for counts in count_parts(__file__, scene, _KINDS).values()
     )
     print(f"{scene}: {without:,.0f} instructions per tick, with the cockpit")
     print(f"{with_cockpit - without:,.0f} more")

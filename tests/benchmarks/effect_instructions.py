@@ -1,20 +1,19 @@
-"""Counts the core's instructions of a tick of sphere_pen with and without effects.
+"""Counts the core's instructions of a tick with and without effects.
 
-python tests/benchmarks/effect_instructions.py [LOOP ...]
+python tests/benchmarks/effect_instructions.py [SCENE ...]
 
-Needs valgrind; some ten seconds for each loop:
+Needs valgrind; half a minute for each scene. In one process, one after the other:
 
-* plain: no effect, in a process that has had none.
-* after: no effect, in a process that has run a loop with all of them.
+* plain: no effect, before the process has had one.
 * friction: with stick-slip friction.
+* after: no effect, after a loop with all of them.
 """
 
 from __future__ import annotations
 
-import sys
 from contextlib import ExitStack
 
-from library_counts import count_by_library
+from library_counts import count_parts, run_benchmark
 
 from drake_haptics.evaluation.measuring.valgrind import counted
 from drake_haptics.loop.builder import BuildHapticDiagram
@@ -37,29 +36,31 @@ ALL = Effects(
 )
 LOOPS = {
     "plain": Effects(),
-    "after": Effects(),
     "friction": Effects(friction=FrictionParameters()),
+    "after": Effects(),
 }
-# The shipped hand presses then.
+# The shipped hand of sphere_pen presses then.
 _WARM_UP, _TICKS = 800, 100
 
 
-def measure(loop: str) -> float:
-    """Returns the core's instructions per tick of one of `LOOPS`."""
-    counts = count_by_library([__file__, loop, "--counted"])
-    return sum(count for path, count in counts.items() if "/_core." in path) / _TICKS
+def measure(scene: str = "sphere_pen") -> dict[str, float]:
+    """Returns the core's instructions per tick of each of `LOOPS`."""
+    return {
+        loop: sum(count for path, count in counts.items() if "/_core." in path) / _TICKS
+        for loop, counts in count_parts(__file__, scene, [*LOOPS]).items()
+    }
 
 
-def run_counted(loop: str) -> None:
+def run_counted(scene: str, loop: str) -> None:
     """Runs a loop until the tool is in contact, and then some ticks counted."""
     if loop == "after":
-        _run(ALL)
+        _run(scene, ALL)
     with ExitStack() as counting:
-        _run(LOOPS[loop], counting)
+        _run(scene, LOOPS[loop], counting)
 
 
-def _run(effects: Effects, counting: ExitStack | None = None) -> None:
-    scene = load_scene(find_scene("sphere_pen"))
+def _run(name: str, effects: Effects, counting: ExitStack | None = None) -> None:
+    scene = load_scene(find_scene(name))
     scene.effects = effects
     haptic = BuildHapticDiagram(scene)
     simulator = make_simulator(haptic)
@@ -70,9 +71,11 @@ def _run(effects: Effects, counting: ExitStack | None = None) -> None:
     simulator.AdvanceTo((_WARM_UP + _TICKS + 0.5) * haptic.period_s)
 
 
+def print_counts(scene: str) -> None:
+    """Prints the instructions of each loop."""
+    for loop, count in measure(scene).items():
+        print(f"{scene}, {loop}: {count:,.0f} instructions of the core per tick")
+
+
 if __name__ == "__main__":
-    if "--counted" in sys.argv:
-        run_counted(sys.argv[1])
-    else:
-        for name in sys.argv[1:] or LOOPS:
-            print(f"{name}: {measure(name):,.0f} instructions of the core per tick")
+    run_benchmark(LOOPS, run_counted, print_counts, ["sphere_pen"])

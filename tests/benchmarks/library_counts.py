@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -19,24 +20,50 @@ def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
     Raises:
         subprocess.CalledProcessError: the program failed.
     """
-    counts: dict[str, int] = {}
-    paths: dict[str, str] = {}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "profile"
         run_callgrind(arguments, str(file))
-        path, of_callee = "", False
-        for line in file.read_text(errors="replace").splitlines():
-            if named := re.match(r"(c?ob)=\((\d+)\)(?: (.*))?$", line):
-                kind, number, name = named.groups()
-                paths.setdefault(number, name)
-                path = paths[number] if kind == "ob" else path
-            elif line.startswith("calls="):
-                # The next line tells what the callee took, which tells so itself.
-                of_callee = True
-            elif cost := re.match(r"[+*\-\d]\S* (\d+)$", line):
-                if not of_callee:
-                    counts[path] = counts.get(path, 0) + int(cost[1])
-                of_callee = False
+        return _read_profile(file)
+
+
+def count_parts(
+    program: str, scene: str, parts: Sequence[str]
+) -> dict[str, dict[str, int]]:
+    """Counts the parts of a scene in a program that ends by `run_benchmark`.
+
+    One process runs one after the other: to start it takes most of the time.
+
+    Returns:
+        For each part its instructions, by the path of each library.
+
+    Raises:
+        subprocess.CalledProcessError: the program failed.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "profile"
+        run_callgrind([program, scene, *parts], str(file))
+        return {
+            part: _read_profile(file.with_suffix(f".{number}"))
+            for number, part in enumerate(parts, start=1)
+        }
+
+
+def _read_profile(file: Path) -> dict[str, int]:
+    counts: dict[str, int] = {}
+    paths: dict[str, str] = {}
+    path, of_callee = "", False
+    for line in file.read_text(errors="replace").splitlines():
+        if named := re.match(r"(c?ob)=\((\d+)\)(?: (.*))?$", line):
+            kind, number, name = named.groups()
+            paths.setdefault(number, name)
+            path = paths[number] if kind == "ob" else path
+        elif line.startswith("calls="):
+            # The next line tells what the callee took, which tells so itself.
+            of_callee = True
+        elif cost := re.match(r"[+*\-\d]\S* (\d+)$", line):
+            if not of_callee:
+                counts[path] = counts.get(path, 0) + int(cost[1])
+            of_callee = False
     return counts
 
 
@@ -46,7 +73,7 @@ def run_benchmark(
     print_counts: Callable[[str], None],
     scenes: Sequence[str],
 ) -> None:
-    """Prints the counts of scenes; with a part too, is the program counted.
+    """Prints the counts of scenes; with parts too, is the program counted.
 
     Args:
         parts: Names of what is counted in a scene.
@@ -54,8 +81,12 @@ def run_benchmark(
         print_counts: Counts the parts of a scene.
         scenes: Names of those where the command line has none.
     """
-    if len(sys.argv) == 3 and sys.argv[2] in parts:
-        run_counted(sys.argv[1], sys.argv[2])
+    if sys.argv[2:] and set(sys.argv[2:]) <= set(parts):
+        for part in sys.argv[2:]:
+            run_counted(sys.argv[1], part)
+            # Into a profile of its own; the counts go on from zero.
+            control = ["callgrind_control", "--dump", str(os.getpid())]
+            subprocess.run(control, capture_output=True, check=True)
         return
     try:
         require_valgrind()

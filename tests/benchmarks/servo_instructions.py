@@ -2,7 +2,7 @@
 
 python tests/benchmarks/servo_instructions.py [SCENE ...]
 
-Needs valgrind; a minute for each scene. The handle moves as recorded, at 4 kHz, in
+Needs valgrind; half a minute for each scene. The handle moves as recorded, at 4 kHz, in
 contact, under the constraint law. Counted are the core and its binding alone:
 
 * step: query, constraints and the tool's step, `ConstraintStepper`.
@@ -13,7 +13,7 @@ contact, under the constraint law. Counted are the core and its binding alone:
 from __future__ import annotations
 
 import numpy as np
-from library_counts import count_by_library, run_benchmark
+from library_counts import count_parts, run_benchmark
 from scipy.spatial.transform import Rotation
 
 from drake_haptics._core import (
@@ -36,11 +36,13 @@ _PERIOD_S = _TICK_S / _PER_TICK
 _BASE = np.eye(7)[0]
 
 
-def measure(scene: str, part: str) -> float:
-    """Returns the instructions of a part in each period."""
-    counts = count_by_library([__file__, scene, part])
-    core = sum(count for path, count in counts.items() if "/_core." in path)
-    return core / (_TICKS * _PER_TICK)
+def measure(scene: str) -> dict[str, float]:
+    """Returns the core's instructions in each period, by the part."""
+    return {
+        part: sum(count for path, count in counts.items() if "/_core." in path)
+        / (_TICKS * _PER_TICK)
+        for part, counts in count_parts(__file__, scene, PARTS).items()
+    }
 
 
 def run_counted(scene: str, part: str) -> None:
@@ -112,7 +114,7 @@ def print_counts(scene: str) -> None:
     """Prints the instructions of each part."""
     print(f"| {scene}: instructions | {' | '.join(PARTS)} |")
     print(f"| --- |{' --: |' * len(PARTS)}")
-    row = " | ".join(f"{measure(scene, part):,.0f}" for part in PARTS)
+    row = " | ".join(f"{count:,.0f}" for count in measure(scene).values())
     print(f"| a period | {row} |", flush=True)
 
 

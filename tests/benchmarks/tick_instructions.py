@@ -17,9 +17,10 @@ each callback, each port that one reads, each vector that crosses. The core is t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 
-from library_counts import count_by_library, run_benchmark
+from library_counts import count_parts, run_benchmark
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
@@ -51,12 +52,14 @@ _LIBRARIES = {
 _REST = "C and C++ libraries"
 
 
-def measure(scene: str, loop: str) -> dict[str, float]:
-    """Returns instructions per tick by the name of the library."""
-    found = dict.fromkeys([*_LIBRARIES.values(), _REST], 0.0)
-    for path, count in count_by_library([__file__, scene, loop]).items():
-        names = [name for part, name in _LIBRARIES.items() if part in path]
-        found[names[0] if names else _REST] += count / _TICKS
+def measure(scene: str, loops: Sequence[str] = LOOPS) -> dict[str, dict[str, float]]:
+    """Returns instructions per tick by the loop and the name of the library."""
+    found = {}
+    for loop, counts in count_parts(__file__, scene, loops).items():
+        found[loop] = dict.fromkeys([*_LIBRARIES.values(), _REST], 0.0)
+        for path, count in counts.items():
+            names = [name for part, name in _LIBRARIES.items() if part in path]
+            found[loop][names[0] if names else _REST] += count / _TICKS
     return found
 
 
@@ -100,7 +103,7 @@ def print_counts(scene: str) -> None:
     """Prints the instructions of a tick of each loop, by library."""
     print(f"| {scene}: instructions per tick | {' | '.join(LOOPS)} |")
     print(f"| --- |{' --: |' * len(LOOPS)}")
-    columns = [measure(scene, loop) for loop in LOOPS]
+    columns = [*measure(scene).values()]
     for name in columns[0]:
         counts = " | ".join(f"{column[name]:,.0f}" for column in columns)
         print(f"| {name} | {counts} |")
