@@ -32,6 +32,7 @@ LOOPS = {
     "drake_haptics, your own plant, paced": "your own discrete plant, in real time",
     "drake_haptics, your own backend": "your own device",
     "drake_haptics, your own plant": "your own discrete plant",
+    "drake_haptics, native part": "the C++ core alone",
     "Drake, bushing, TAMSI": "Drake: bushing and point contact, TAMSI",
     "MuJoCo, mj_step": "MuJoCo: `mj_step`, timed in C",
 }
@@ -106,9 +107,10 @@ def make_loops() -> str:
     ]
     head = ["one tick of `cup_spoon`", "median", "p99", "p99.9"]
     return (
-        f"{to_markdown([head, *rows])}\nAll have contact of the same convex pieces."
-        " In real time, each tick begins at its millisecond, as with a device; the"
-        " others do not wait. Interruptions by the operating system do not count.\n"
+        f"{to_markdown([head, *rows])}\nAll rows have contact of the same convex"
+        " pieces. In real time, each tick begins at its millisecond, as with a device;"
+        " the other rows do not wait. Interruptions by the operating system are not"
+        " counted.\n"
     )
 
 
