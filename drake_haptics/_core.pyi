@@ -1766,6 +1766,14 @@ class FrameChange:
         Pose and spatial velocity of H in A, (13,), from those in B: (7,), m, and (6,), [rad/s; m/s].
         """
 
+    def change_reading(self, X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_Ho_B: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], sequence: float, time_s: float, buttons: float, gate: float, fault: float) -> Annotated[NDArray[numpy.float64], dict(shape=(37), order='C')]:
+        """
+        The motion of H in A (13,), followed by all numbers of a `DeviceReading` (24,).
+
+        Raises:
+            FloatingPointError: the motion is not finite.
+        """
+
     def change_wrench_back(self, F_A: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """Wrench (6,) in B from that in A, [N·m; N]."""
 
@@ -2543,6 +2551,11 @@ class ContactChain(SceneTracker):
     def find_force(self, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
         The wrench (6,) [torque; force] of the contacts on the tool at To, N·m and N, at its pose (7,) and spatial velocity (6,).
+        """
+
+    def find_coupled_force(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """
+        The sum of that wrench and the coupling's, for the arguments of `joined_coupling_wrench`.
         """
 
     @property

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
@@ -141,9 +139,7 @@ class _Exchange(LeafSystem):
         )
         # Drake copies the state twice a tick: numbers take a tenth of the time that a
         # Python object takes, and Python writes and reads one group faster than two.
-        state = self.DeclareDiscreteState(
-            _to_state(self._change_motion(first_reading), first_reading)
-        )
+        state = self.DeclareDiscreteState(self._to_state(first_reading))
         self._eval_state = self.DeclareStateOutputPort("state", state).Eval
         self.DeclareAbstractOutputPort(
             "reading",
@@ -159,16 +155,21 @@ class _Exchange(LeafSystem):
 
     def _read(self, context: Context, state: State) -> None:
         reading = self._backend.read()
-        if reading is None:
-            return
-        motion = self._change_motion(reading)
-        if not math.isfinite(sum(motion.tolist())):
-            raise FloatingPointError("the device's reading is not finite")
-        state.get_mutable_discrete_state().set_value(_to_state(motion, reading))
+        if reading is not None:
+            state.get_mutable_discrete_state(0).set_value(self._to_state(reading))
 
-    def _change_motion(self, reading: DeviceReading) -> np.ndarray:
-        """Returns [X_WH; V_WH] (13,) of a reading."""
-        return self._frame.change_motion(reading.X_BH, reading.V_BH)
+    def _to_state(self, reading: DeviceReading) -> np.ndarray:
+        """Returns the state (37,): [X_WH; V_WH], then the numbers of a reading."""
+        return self._frame.change_reading(
+            reading.X_BH,
+            reading.V_BH,
+            reading.F_Ho_B,
+            reading.sequence,
+            reading.time_s,
+            reading.buttons,
+            reading.gate,
+            reading.fault,
+        )
 
     def _write(self, context: Context) -> None:
         state = self._eval_state(context)
@@ -206,16 +207,3 @@ class _Exchange(LeafSystem):
 
 # Parts of the state, after [X_WH; V_WH].
 _X_BH, _V_BH = slice(13, 20), slice(20, 26)
-
-
-def _to_state(motion: np.ndarray, reading: DeviceReading) -> np.ndarray:
-    """Returns the state (37,): [X_WH; V_WH], then the numbers of a reading."""
-    # NumPy converts floats faster than members of enumerations.
-    told = (
-        float(reading.sequence),
-        reading.time_s,
-        float(reading.buttons),
-        float(reading.gate),
-        float(reading.fault),
-    )
-    return np.concatenate([motion, reading.X_BH, reading.V_BH, reading.F_Ho_B, told])

@@ -35,12 +35,17 @@ PosePath MakePath(std::vector<double> starts, const CubicsArg& cubics,
   return path;
 }
 
-template <typename T>
-void RequireFinite(const State<T>& state) {
-  if (!ValuesOf(state).allFinite()) {
-    PyErr_SetString(PyExc_FloatingPointError, "the arm's state is not finite");
+void RequireFinite(const Eigen::Ref<const Eigen::VectorXd>& values,
+                   const char* refusal) {
+  if (!values.allFinite()) {
+    PyErr_SetString(PyExc_FloatingPointError, refusal);
     throw nb::python_error();
   }
+}
+
+template <typename T>
+void RequireFinite(const State<T>& state) {
+  RequireFinite(ValuesOf(state), "the arm's state is not finite");
 }
 
 template <typename T>
@@ -159,6 +164,24 @@ void BindFrameChange(nb::module_& m) {
            nb::arg("V_BH"),
            "Pose and spatial velocity of H in A, (13,), from those in B: (7,), "
            "m, and (6,), [rad/s; m/s].")
+      .def(
+          "change_reading",
+          [](const FrameChange& self, const PoseVector& X_BH, const Vec6& V_BH,
+             const Vec6& F_Ho_B, double sequence, double time, double buttons,
+             double gate, double fault) {
+            Eigen::Matrix<double, 37, 1> state;
+            state << self.ChangeMotion(X_BH, V_BH), X_BH, V_BH, F_Ho_B,
+                sequence, time, buttons, gate, fault;
+            RequireFinite(state.head<13>(),
+                          "the device's reading is not finite");
+            return state;
+          },
+          nb::arg("X_BH"), nb::arg("V_BH"), nb::arg("F_Ho_B"),
+          nb::arg("sequence"), nb::arg("time_s"), nb::arg("buttons"),
+          nb::arg("gate"), nb::arg("fault"),
+          "The motion of H in A (13,), followed by all numbers of a "
+          "`DeviceReading` (24,).\n\n"
+          "Raises:\n    FloatingPointError: the motion is not finite.")
       .def(
           "change_wrench_back",
           [](const FrameChange& self, const Vec6& F_A) {

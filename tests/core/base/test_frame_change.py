@@ -49,3 +49,19 @@ def test_a_pose_that_is_none_is_refused():
 def test_a_motion_that_is_not_finite_stays_so():
     change = FrameChange(np.array([1.0, 0, 0, 0, 0, 0, 0]))
     assert np.isnan(change.change_motion(np.full(7, np.nan), np.zeros(6))[:7]).all()
+
+
+def test_a_reading_is_its_motion_and_then_its_numbers():
+    rng = np.random.default_rng(5)
+    X_AB = RigidTransform(RollPitchYaw(0.3, -0.9, 2.0), [1.0, 2.0, 3.0])
+    change = FrameChange(pose_to_vector(X_AB))
+    X_BH, V_BH, F_Ho_B = rng.normal(size=7), rng.normal(size=6), rng.normal(size=6)
+    told = [2**40, 0.25, 5, 3, 1]
+    reading = change.change_reading(X_BH, V_BH, F_Ho_B, *told)
+    motion = change.change_motion(X_BH, V_BH)
+    assert reading.tolist() == [*motion, *X_BH, *V_BH, *F_Ho_B, *told]
+    for i in range(6):
+        V_BH[i] = [np.nan, np.inf][i % 2]
+        with pytest.raises(FloatingPointError, match="not finite"):
+            change.change_reading(X_BH, V_BH, F_Ho_B, *told)
+        V_BH[i] = 0.0
