@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from copy import copy
 from functools import reduce
 from operator import add
 from typing import Any
@@ -18,14 +17,10 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics._core import joined_coupling_wrench
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.framework.differentiable_system import (
     get_no_witness_functions,
 )
-
-# The tool's motion in `motions_and_gains`.
-_X_WT, _V_WT = slice(13, 20), slice(20, 26)
 
 
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
@@ -42,12 +37,6 @@ def AppliedWrenches_(T: type) -> type:
         force.body_index = body
         force.p_BoBq_B = p_BoBo_B
         return force
-
-    def apply(force: Any, F_Bo_W: Any) -> Any:
-        """Returns a copy of a force with a wrench (6)."""
-        applied = copy(force)
-        applied.F_Bq_W = SpatialForce(F_Bo_W)
-        return applied
 
     def add_up(evals: Sequence[Any], context: Any, first: Sequence[Any] = ()) -> Any:
         """Returns the sum of vectors; `sum` begins with 0, a slow sum in itself."""
@@ -154,12 +143,11 @@ def AppliedWrenches_(T: type) -> type:
             # The chain has no derivatives.
             if self._chained_at is None or T is not float:
                 return add_up(self._eval_on_tool, context)
-            chain, joined = self._eval_chain(context), self._eval_joined(context)
-            contact = chain.find_force(joined[_X_WT], joined[_V_WT])
+            chain = self._eval_chain(context)
+            first = chain.find_coupled_force(self._eval_joined(context), self._q_HT)
             if self._warn_of_depth is not None:
                 self._warn_of_depth(context, *chain.deepest)
-            coupling = joined_coupling_wrench(joined, self._q_HT)[:6]
-            return add_up(self._eval_on_tool[2:], context, [contact, coupling])
+            return add_up(self._eval_on_tool[2:], context, [first])
 
         def _calc_forces(self, context: Any, forces: AbstractValue) -> None:
             wrenches = [self._add_up_on_tool(context)]
@@ -168,12 +156,10 @@ def AppliedWrenches_(T: type) -> type:
                 wrenches += [
                     on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
                 ]
-            forces.set_value(
-                [
-                    apply(force, F_Bo_W)
-                    for force, F_Bo_W in zip(self._forces, wrenches, strict=True)
-                ]
-            )
+            for force, F_Bo_W in zip(self._forces, wrenches, strict=True):
+                force.F_Bq_W = SpatialForce(F_Bo_W)
+            # Drake copies them.
+            forces.set_value(self._forces)
 
     return Impl
 

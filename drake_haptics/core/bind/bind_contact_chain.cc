@@ -76,6 +76,13 @@ class TrackedChain : public SceneTracker {
     return FindWrench({q_WT, V_WT}).F;
   }
 
+  // The sum is in the order of `AppliedWrenches`: contact, coupling.
+  Vec6 FindCoupledForce(const JoinedVector<double>& joined,
+                        const PoseVector& q_HT) {
+    return FindWrench(StateOf(joined)).F +
+           ComputeJoinedCoupling(joined, q_HT).tool.F;
+  }
+
   // Returns the least distance, and the one below which contacts push, m.
   std::pair<double, double> FindDeepest() const {
     const Turn turn(&mutex_, Turn::Gil::kHold);
@@ -183,6 +190,10 @@ void BindContactChain(nb::module_& m) {
            nb::arg("V_WT"),
            "The wrench (6,) [torque; force] of the contacts on the tool at To, "
            "N·m and N, at its pose (7,) and spatial velocity (6,).")
+      .def("find_coupled_force", &TrackedChain::FindCoupledForce,
+           nb::arg("joined"), nb::arg("q_HT"),
+           "The sum of that wrench and the coupling's, for the arguments of "
+           "`joined_coupling_wrench`.")
       .def_prop_ro("deepest", &TrackedChain::FindDeepest,
                    "Least distance of the contacts that were found last (m, "
                    "infinite without any), and the distance below which they "

@@ -50,6 +50,20 @@ def test_where_nothing_else_moves_only_the_tool_is_pushed():
     np.testing.assert_array_equal(force.F_Bq_W.get_coeffs(), F)
 
 
+def test_another_context_leaves_the_forces_of_the_first_as_they_are():
+    system = make_system()
+    first, second = (system.CreateDefaultContext() for _ in range(2))
+    fix(system, first, seed=1)
+    fix(system, second, seed=2)
+    port = system.get_output_port()
+    before, other, after = (
+        [force.F_Bq_W.get_coeffs() for force in port.Eval(context)]
+        for context in (first, second, first)
+    )
+    np.testing.assert_array_equal(before, after)
+    assert not np.isin(before, other).any()
+
+
 @pytest.mark.parametrize("again", [False, True])
 def test_derivatives_agree_with_central_differences(again):
     system = make_system()
