@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <compare>
 #include <stdexcept>
 #include <string>
-#include <unsupported/Eigen/AutoDiff>
 #include <vector>
 
 namespace drake_haptics {
@@ -12,7 +12,84 @@ namespace drake_haptics {
 /// A number with its derivatives with respect to any number of variables. Code
 /// to differentiate is a template over the scalar, which is double in a tick
 /// and AutoDiff for gradients: one derivation serves both.
-using AutoDiff = Eigen::AutoDiffScalar<Eigen::VectorXd>;
+///
+/// All is compiled once and called, even copies: Eigen::AutoDiffScalar, whose
+/// expressions are inlined wherever a gradient is, takes the compiler several
+/// times longer.
+class AutoDiff {
+ public:
+  AutoDiff() = default;
+  /// A constant, whose derivatives are empty.
+  AutoDiff(double value) : value_(value) {}
+  AutoDiff(double value, const Eigen::VectorXd& derivatives);
+  AutoDiff(const AutoDiff&);
+  AutoDiff(AutoDiff&&) noexcept;
+  AutoDiff& operator=(const AutoDiff&);
+  AutoDiff& operator=(AutoDiff&&) noexcept;
+  ~AutoDiff();
+
+  double value() const { return value_; }
+  double& value() { return value_; }
+  const Eigen::VectorXd& derivatives() const { return derivatives_; }
+  Eigen::VectorXd& derivatives() { return derivatives_; }
+
+  AutoDiff& operator+=(const AutoDiff& other);
+  AutoDiff& operator-=(const AutoDiff& other);
+  AutoDiff& operator*=(const AutoDiff& other);
+  AutoDiff& operator/=(const AutoDiff& other);
+
+ private:
+  double value_ = 0;
+  Eigen::VectorXd derivatives_;
+};
+
+AutoDiff operator-(const AutoDiff& a);
+AutoDiff operator+(const AutoDiff& a, const AutoDiff& b);
+AutoDiff operator-(const AutoDiff& a, const AutoDiff& b);
+AutoDiff operator*(const AutoDiff& a, const AutoDiff& b);
+AutoDiff operator/(const AutoDiff& a, const AutoDiff& b);
+AutoDiff abs(const AutoDiff& a);
+AutoDiff sqrt(const AutoDiff& a);
+AutoDiff sin(const AutoDiff& a);
+AutoDiff cos(const AutoDiff& a);
+AutoDiff asin(const AutoDiff& a);
+AutoDiff atan2(const AutoDiff& y, const AutoDiff& x);
+
+inline bool operator==(const AutoDiff& a, const AutoDiff& b) {
+  return a.value() == b.value();
+}
+inline std::partial_ordering operator<=>(const AutoDiff& a, const AutoDiff& b) {
+  return a.value() <=> b.value();
+}
+
+}  // namespace drake_haptics
+
+/// Eigen's matrices of the scalar. Its operations cost too much for a loop of
+/// them to be unrolled.
+template <>
+struct Eigen::NumTraits<drake_haptics::AutoDiff> : Eigen::NumTraits<double> {
+  using Real = drake_haptics::AutoDiff;
+  using NonInteger = drake_haptics::AutoDiff;
+  using Nested = drake_haptics::AutoDiff;
+  enum {
+    RequireInitialization = 1,
+    ReadCost = HugeCost,
+    AddCost = HugeCost,
+    MulCost = HugeCost
+  };
+};
+
+template <typename Operation>
+struct Eigen::ScalarBinaryOpTraits<drake_haptics::AutoDiff, double, Operation> {
+  using ReturnType = drake_haptics::AutoDiff;
+};
+
+template <typename Operation>
+struct Eigen::ScalarBinaryOpTraits<double, drake_haptics::AutoDiff, Operation> {
+  using ReturnType = drake_haptics::AutoDiff;
+};
+
+namespace drake_haptics {
 
 template <typename T>
 using VectorOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;

@@ -1,7 +1,7 @@
 #include "constraint/row_gradient.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -117,10 +117,18 @@ MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
   for (const Vec3& u : along_A) slides.col(column++) = X_WT.R * u;
   for (const Vec3& u : along_B) slides.col(column++) = -(X_WO.R * u);
   if (column > 0) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> places(across *
-                                                                   slides);
-    places.setThreshold(kParallel);
-    const Eigen::MatrixXd places_inverse = places.pseudoInverse();
+    // The pseudoinverse Pᵀ (P Pᵀ)⁺, in the principal axes of P Pᵀ.
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> P = across * slides;
+    const Eigen::SelfAdjointEigenSolver<Mat3> axes(
+        P.lazyProduct(P.transpose()));
+    const Vec3 squares = axes.eigenvalues();
+    const double least = kParallel * kParallel * squares[2];
+    const Vec3 inverses =
+        squares.unaryExpr([&](double x) { return x > least ? 1 / x : 0.0; });
+    const Mat3 inverse = axes.eigenvectors() * inverses.asDiagonal() *
+                         axes.eigenvectors().transpose();
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> places_inverse =
+        P.transpose().lazyProduct(inverse);
     const VectorOf<AutoDiff> slid = -(places_inverse.cast<AutoDiff>() * off);
     const auto num_A = static_cast<Eigen::Index>(along_A.size());
     for (Eigen::Index i = 0; i < column; ++i) {

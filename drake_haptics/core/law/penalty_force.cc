@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 
 #include "base/require.h"
 #include "law/approach.h"
@@ -73,7 +74,11 @@ Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
   if (!set.coupling.empty()) return SumCoupled(set.coupling, G, k);
   Wrenches<T> kG = G;
   for (Eigen::Index i = 0; i < G.cols(); ++i) kG.col(i) *= k[i];
-  return kG * G.transpose();
+  if constexpr (std::is_same_v<T, double>) {
+    return kG * G.transpose();
+  } else {
+    return kG.lazyProduct(G.transpose());  // no blocks for a processor's cache
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -13,6 +14,26 @@ Mat3Of<T> CrossMatrix(const Vec3Of<T>& v) {
   Mat3Of<T> m;
   m << T(0), -v.z(), v.y(), v.z(), T(0), -v.x(), -v.y(), v.x(), T(0);
   return m;
+}
+
+// The solution of A x = b.
+Vec6 Solve(const Mat6& A, const Vec6& b) { return A.partialPivLu().solve(b); }
+
+// The same with derivatives, by A dx = db − dA x.
+Vec6Of<AutoDiff> Solve(const Mat6Of<AutoDiff>& A, const Vec6Of<AutoDiff>& b) {
+  const Eigen::PartialPivLU<Mat6> factors(ValuesOf(A));
+  const Vec6 x = factors.solve(ValuesOf(b));
+  const Vec6Of<AutoDiff> rest = b - A * x;
+  Eigen::Index num_derivatives = 0;
+  for (const AutoDiff& entry : rest) {
+    num_derivatives = std::max(num_derivatives, entry.derivatives().size());
+  }
+  AutoDiffVector moving = ToAutoDiffVector(rest, num_derivatives);
+  moving.value = x;
+  for (auto column : moving.gradient.colwise()) {
+    column = factors.solve(Vec6(column));
+  }
+  return ToScalars<6>(moving, "x");
 }
 
 }  // namespace
@@ -55,7 +76,7 @@ ToolStateOf<T> StepTool(const ToolInertia& inertia, const ToolStateOf<T>& state,
   const Mat6Of<T> left = M + h * wrench.B + h * h * wrench.K;
   const Vec6Of<T> right = h * (wrench.F - b - h * (wrench.K * state.V_WT));
   ToolStateOf<T> next;
-  next.V_WT = state.V_WT + left.partialPivLu().solve(right);
+  next.V_WT = state.V_WT + Solve(left, right);
   next.q_WT = Displaced<T>(state.q_WT, h * next.V_WT);
   return next;
 }

@@ -1,6 +1,5 @@
 /// Derivatives of the effects, with Eigen's checks that their lengths agree:
-/// constants inside the laws have none, and where a sum of products mixes the
-/// two, a build without the checks would lose derivatives without a word.
+/// constants inside the laws have none.
 
 #include <Eigen/Dense>
 #include <cmath>
