@@ -19,7 +19,7 @@ from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from peg_and_hole import peg_and_hole
 from press_cells import SHIPPED
-from press_rig import PERIOD_S
+from press_rig import COUPLING, PERIOD_S
 from press_verdict import find_lost_tick, is_through
 from scipy.spatial.transform import Rotation
 from solid_surface import Overlap, rotation_of
@@ -33,6 +33,7 @@ HELD, WATCHED = 2000, 400
 # A tool at rest moves by less, m: 1 mN on the hand.
 REST_M = 1e-6
 BANDS_HZ = ((10.0, 80.0), (80.0, 400.0))
+SLIDE_M_PER_S = 0.1
 # While a hand turns from pressing to sliding its damper's force changes, ticks.
 TURNING = 20
 LEAST_STEP_N = 0.1
@@ -105,14 +106,12 @@ def measure_presses(
     return faults, runs
 
 
-def calc_step_N(run: Run) -> float:
-    """Returns the largest step of a sliding hand's force.
-
-    It is the change in a tick beyond that in the tick before: a tool that slips off a
-    convex edge changes the force fast, but without a step.
-    """
+def calc_excess_N(run: Run) -> float:
+    """Returns the largest change of a sliding hand's force beyond its own motion's."""
     forces = run.f_hand_W[run.phases == "slide"][TURNING:]
-    return float(np.linalg.norm(np.diff(forces, n=2, axis=0), axis=1).max())
+    own_N = COUPLING.stiffness_N_per_m * SLIDE_M_PER_S * PERIOD_S
+    steps_N = np.linalg.norm(np.diff(forces, axis=0), axis=1)
+    return max(0.0, float(steps_N.max()) - own_N)
 
 
 def insert_peg(
@@ -197,7 +196,7 @@ def measure(law: str, points: int, solids: Sequence[str]) -> dict[str, str]:
         ("over shipped meshes", places("slide", steady=True)),
     ):
         _, slides = measure_presses(law, "slide", chosen)
-        steps_N = np.array([calc_step_N(run) for run in slides])
+        steps_N = np.array([calc_excess_N(run) for run in slides])
         many = (steps_N > LEAST_STEP_N).sum()
         cells[f"slide {where}: largest step of the hand's force"] = (
             f"{steps_N.max():.2f} N, {many} of {len(steps_N)} above {LEAST_STEP_N:g} N"
