@@ -2558,6 +2558,20 @@ class ContactChain(SceneTracker):
         The sum of that wrench and the coupling's, for the arguments of `joined_coupling_wrench`.
         """
 
+    def find_friction(self, friction: StickSlipModel, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> FrictionStep:
+        """
+        The friction of the contacts, as `StickSlipModel.step` of their clusters and wrench.
+
+        Args:
+            friction: friction with the chain's objects, which rest.
+            state: (n,) state from the last tick.
+            X_WT: (7,) pose of the tool.
+            V_WT: (6,) its spatial velocity.
+
+        Raises:
+            ValueError: a size does not match, or an object moves.
+        """
+
     @property
     def deepest(self) -> tuple[float, float]:
         """

@@ -4,11 +4,14 @@
 #include <nanobind/stl/vector.h>
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bind/bind.h"
+#include "bind/bind_array.h"
 #include "bind/bind_contact.h"
 #include "bind/bind_eigen.h"
 #include "bind/bind_joined_coupling.h"
@@ -25,6 +28,8 @@ namespace {
 
 using StateVector = Eigen::Matrix<double, 13, 1>;
 using Models = std::vector<WrenchModelVector>;
+using Numbers =
+    nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 // A tracker that also returns forces. Each call goes on from the results of the
 // last one.
@@ -81,6 +86,24 @@ class TrackedChain : public SceneTracker {
                         const PoseVector& q_HT) {
     return FindWrench(StateOf(joined)).F +
            ComputeJoinedCoupling(joined, q_HT).tool.F;
+  }
+
+  FrictionStep FindFriction(const StickSlipModel& friction,
+                            const Numbers& state, const PoseVector& q_WT,
+                            const Vec6& V_WT) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    if (friction.num_moving() > 0 ||
+        friction.num_objects() != chain_.num_objects()) {
+      throw std::invalid_argument(
+          "friction must be of the chain's objects, which rest");
+    }
+    if (static_cast<int>(state.shape(0)) != friction.state_size()) {
+      throw std::invalid_argument("state must have " +
+                                  std::to_string(friction.state_size()) +
+                                  " numbers");
+    }
+    Refresh();
+    return chain_.FindFriction(friction, state.data(), {q_WT, V_WT}, &tracker_);
   }
 
   // Returns the least distance, and the one below which contacts push, m.
@@ -194,6 +217,17 @@ void BindContactChain(nb::module_& m) {
            nb::arg("joined"), nb::arg("q_HT"),
            "The sum of that wrench and the coupling's, for the arguments of "
            "`joined_coupling_wrench`.")
+      .def("find_friction", &TrackedChain::FindFriction, nb::arg("friction"),
+           nb::arg("state"), nb::arg("X_WT"), nb::arg("V_WT"),
+           "The friction of the contacts, as `StickSlipModel.step` of their "
+           "clusters and wrench.\n\n"
+           "Args:\n"
+           "    friction: friction with the chain's objects, which rest.\n"
+           "    state: (n,) state from the last tick.\n"
+           "    X_WT: (7,) pose of the tool.\n"
+           "    V_WT: (6,) its spatial velocity.\n\n"
+           "Raises:\n"
+           "    ValueError: a size does not match, or an object moves.")
       .def_prop_ro("deepest", &TrackedChain::FindDeepest,
                    "Least distance of the contacts that were found last (m, "
                    "infinite without any), and the distance below which they "

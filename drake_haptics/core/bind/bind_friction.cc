@@ -42,17 +42,14 @@ FrictionStepOf<T> CheckedStep(const StickSlipModel& model,
     throw std::invalid_argument(
         "contact_wrench must have one force for each cluster");
   }
-  std::vector<T> normal_forces;
-  normal_forces.reserve(clusters.clusters.size());
-  for (std::size_t c = 0; c < clusters.clusters.size(); ++c) {
-    if (clusters.clusters[c].object >= model.num_objects()) {
+  for (const ClusterOf<T>& cluster : clusters.clusters) {
+    if (cluster.object >= model.num_objects()) {
       throw std::invalid_argument(
           "a cluster names an object that has no coefficient");
     }
-    normal_forces.push_back(LengthOf(contact_wrench.f_cluster_W[c]));
   }
-  return model.Step(state.data(), clusters.clusters, normal_forces, q_WT,
-                    q_WO.data());
+  return model.Step(state.data(), clusters.clusters,
+                    contact_wrench.NormalForces(), q_WT, q_WO.data());
 }
 
 FrictionStep StepFriction(const StickSlipModel& model, const Numbers& state,

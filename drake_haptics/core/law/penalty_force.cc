@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "base/autodiff.h"
 #include "base/require.h"
 #include "law/approach.h"
 
@@ -95,6 +96,14 @@ std::vector<Vec6Of<T>> PenaltyWrenchOf<T>::SumByObject() const {
     F_objects_W[object[i]] += F_cluster_W[i];
   }
   return F_objects_W;
+}
+
+template <typename T>
+std::vector<T> PenaltyWrenchOf<T>::NormalForces() const {
+  std::vector<T> forces;
+  forces.reserve(f_cluster_W.size());
+  for (const Vec3Of<T>& f_W : f_cluster_W) forces.push_back(LengthOf(f_W));
+  return forces;
 }
 
 template <typename T>

@@ -46,6 +46,9 @@ struct PenaltyWrenchOf {
 
   /// The wrench on each object at its origin.
   std::vector<Vec6Of<T>> SumByObject() const;
+
+  /// The norm of each cluster's force, N.
+  std::vector<T> NormalForces() const;
 };
 using PenaltyWrench = PenaltyWrenchOf<double>;
 

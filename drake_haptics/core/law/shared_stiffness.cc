@@ -24,9 +24,10 @@ constexpr double kSameNormal = 1e-26;
 // Equal normals are searched for among this many earlier directions: enough for
 // alternating faces; a missed one costs little more (low_rank.h).
 constexpr std::size_t kRecent = 8;
-// Part of c that the features may leave out: a billionth. It changes forces by
-// the same share, far too little to notice.
-constexpr double kLeftOut = 1e-9;
+// Part of c that the features may leave out. It changes forces by the same
+// share, far too little to notice, and their derivatives by about its root:
+// those of AutoDiffXd, which leaves out nothing, must be right to 1e-6.
+constexpr double kLeftOut = 1e-11;
 
 // Common share c of two contacts: 1 along one direction, 0 from a right angle
 // on. A Wendland function, which is positive definite on the sphere (Gneiting

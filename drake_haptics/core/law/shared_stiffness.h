@@ -26,9 +26,9 @@ namespace drake_haptics {
 /// - λ is the solution of a convex problem: it is unique, never pulls, changes
 ///   with w by at most k / ρ per meter, and is the gradient of a potential
 ///   ½ λᵀw, so that it generates no energy while normals and shares stay.
-/// For directions that are nearly equal a billionth of c is left out
-/// (low_rank.h): so the time grows with the contacts, and with the square of
-/// the number of different directions.
+/// For directions that are nearly equal 1e-11 of c is left out (low_rank.h): so
+/// the time grows with the contacts, and with the square of the number of
+/// different directions.
 /// @param tolerance the distance t below which contacts push, m.
 /// @throws std::invalid_argument unless tolerance >= 0 and finite.
 template <typename T>

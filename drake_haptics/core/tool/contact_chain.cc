@@ -59,7 +59,9 @@ const WrenchModel& ContactChain::FindWrench(const ToolState& tool,
   const ContactLaw& law = this->law();
   const ContactSet& found =
       FindContacts(tool.q_WT, tracker->tolerance(), tracker);
-  if (has_wrench_ && IsSame(tool.V_WT, V_WT_)) return wrench_;
+  if (has_wrench_ && IsSame(tool.V_WT, V_WT_)) {
+    return wrench_.tool;
+  }
   has_wrench_ = false;
   if (law.delta.has_value()) {
     ClusterContacts(found.contacts, *law.delta, law.tolerance, &clusters_);
@@ -67,11 +69,19 @@ const WrenchModel& ContactChain::FindWrench(const ToolState& tool,
     ShareStiffness(found.contacts, law.tolerance, &clusters_);
   }
   wrench_ = ComputePenaltyWrench(clusters_, {tool.q_WT.tail<3>(), tool.V_WT},
-                                 law.objects, law.materials)
-                .tool;
+                                 law.objects, law.materials);
   V_WT_ = tool.V_WT;
   has_wrench_ = true;
-  return wrench_;
+  return wrench_.tool;
+}
+
+FrictionStep ContactChain::FindFriction(const StickSlipModel& friction,
+                                        const double* state,
+                                        const ToolState& tool,
+                                        ContactTracker* tracker) {
+  FindWrench(tool, tracker);
+  return friction.Step<double>(state, clusters_.clusters,
+                               wrench_.NormalForces(), tool.q_WT, nullptr);
 }
 
 }  // namespace drake_haptics

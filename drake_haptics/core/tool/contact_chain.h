@@ -5,6 +5,7 @@
 
 #include "base/rotation.h"
 #include "law/clustering.h"
+#include "law/friction.h"
 #include "law/penalty_force.h"
 #include "tool/rigid_tool.h"
 #include "tracker/contact_tracker.h"
@@ -45,6 +46,10 @@ class ContactChain {
   /// @throws std::logic_error without a law.
   double tolerance_of_law() const { return law().tolerance; }
 
+  /// Number of objects of the law.
+  /// @throws std::logic_error without a law.
+  int num_objects() const { return static_cast<int>(law().materials.size()); }
+
   /// Number of clusters of the wrench that was found last.
   int num_clusters() const {
     return static_cast<int>(clusters_.clusters.size());
@@ -54,6 +59,13 @@ class ContactChain {
   /// @throws as FindContacts and ComputePenaltyWrench; std::logic_error without
   ///         a law.
   const WrenchModel& FindWrench(const ToolState& tool, ContactTracker* tracker);
+
+  /// Returns the friction of the contacts; their objects rest.
+  /// @param state of the last tick, friction.state_size() numbers.
+  /// @pre friction has the objects of the law, none of which moves.
+  /// @throws as FindWrench.
+  FrictionStep FindFriction(const StickSlipModel& friction, const double* state,
+                            const ToolState& tool, ContactTracker* tracker);
 
  private:
   const ContactLaw& law() const;
@@ -66,7 +78,7 @@ class ContactChain {
   bool has_wrench_ = false;  // for q_WT_ and V_WT_
   Vec6 V_WT_;
   ClusterSet clusters_;
-  WrenchModel wrench_;
+  PenaltyWrench wrench_;
 };
 
 }  // namespace drake_haptics

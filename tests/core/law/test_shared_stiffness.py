@@ -374,10 +374,6 @@ def test_hundreds_of_contacts_along_few_directions() -> None:
     G = np.hstack([np.cross(clusters.p_WC, clusters.nhat_BA_W), clusters.nhat_BA_W])
     expected = (k[:, None] * G).T @ clusters.coupling @ G
     np.testing.assert_allclose(K.reshape(6, 6), expected, rtol=0, atol=1e-8)
-    for o in range(2):
-        of = np.flatnonzero((clusters.object_index == o) & (truth.compression > 0))
-        C = compliance(clusters.nhat_BA_W, shares(contacts, of, T)) if False else None
-        assert C is None
 
 
 @pytest.mark.parametrize("spread", [1e-9, 1e-5, 1e-3, 1e-2])
@@ -395,11 +391,11 @@ def test_many_contacts_along_nearly_one_direction(spread: float) -> None:
         sites.append(Site(Rotation.from_rotvec([*turn, 0]), tips, faces))
     contacts = scatter(sites, T)
     assert len(contacts) > 120
-    # Here features leave out a billionth of what directions have in common.
+    # Here features leave out 1e-11 of what directions have in common.
     np.testing.assert_allclose(
         _core.share_stiffness(contacts, T).compression,
         shared(contacts, T).compression,
-        atol=1e-8 * T,
+        atol=1e-10 * T,
     )
 
 
