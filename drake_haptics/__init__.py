@@ -1,10 +1,10 @@
 """Six-degree-of-freedom haptic rendering of arbitrary meshes, as Drake systems.
 
-What most programs need is here by its own name; `drake_haptics.geometry`,
+Most programs need only the names of this module; `drake_haptics.geometry`,
 `drake_haptics.systems`, `drake_haptics.simulation` and `drake_haptics.analysis` offer
 more. The geometry (`load_mesh`, `decompose`, `ConvexPair`, `ContactTracker`,
-`SceneTracker`) works without Drake, which is imported only when something that needs it
-is asked for.
+`SceneTracker`) works without Drake, which is imported only when a name that needs it is
+used.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _get_public, _, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:
-    """Imports a public name from its module when it is first asked for."""
+    """Imports a public name from its module on first use."""
     if name == "__version__":
         return import_module("importlib.metadata").version(__name__)
     if name not in __all__:

@@ -13,11 +13,12 @@ from drake_haptics import (
     BuildHapticDiagram,
     RealTimePacer,
     RunStatistics,
+    configure_camera,
     find_scene,
     load_scene,
     run,
+    start_meshcat,
 )
-from drake_haptics.visualization.meshcat import configure_camera, start_meshcat
 
 meshcat = start_meshcat()
 haptic = BuildHapticDiagram(load_scene(find_scene("cup_spoon")), meshcat=meshcat)

@@ -1,7 +1,7 @@
-"""The systems of the haptic loop, each by its own name.
+"""The systems of the haptic loop.
 
-They are in sub-packages by purpose, and are imported on first use: a system that a
-scene does not name is not even loaded.
+They are in sub-packages by purpose and are imported on first use, so that a system that
+a scene does not need is not even loaded.
 """
 
 import lazy_loader

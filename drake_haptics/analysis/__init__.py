@@ -1,6 +1,6 @@
-"""Analyzes the stability of a diagram: linear maps, modes, bounds and maps of them.
+"""Analyzes the stability of a diagram: linear maps, modes, bounds and Z-width maps.
 
-It works on any Drake diagram. The names are imported when they are first asked for.
+It works on any Drake diagram. The names are imported on first use.
 """
 
 import lazy_loader

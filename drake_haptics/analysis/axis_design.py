@@ -1,4 +1,4 @@
-"""A spring and damper for one kind of motion of a device, and what limits them."""
+"""Designs a spring and damper for one kind of motion of a device."""
 
 from __future__ import annotations
 
@@ -30,15 +30,13 @@ _LARGEST_BETA = 0.2
 class AxisDevice:
     """One kind of motion of a device, without a hand.
 
-    Units are those of translation; of rotation kg·m², N·m·s/rad and N·m/rad.
+    Units are those of translation; for rotation kg·m², N·m·s/rad and N·m/rad.
 
     Attributes:
-        mass: Apparent mass, the least in any direction, kg.
-        damping: Physical damping, the least, N·s/m.
-        rated_stiffness: Largest stiffness that the device is made for, N/m; None if
-            unknown.
-        rated_damping: Largest damping that the device is made for, N·s/m; None if
-            unknown.
+        mass: Least apparent mass in any direction, kg.
+        damping: Least physical damping in any direction, N·s/m.
+        rated_stiffness: Rated stiffness of the device, N/m; None if unknown.
+        rated_damping: Rated damping of the device, N·s/m; None if unknown.
     """
 
     mass: float
@@ -66,7 +64,7 @@ class GripMargins:
         gain: The largest stable factor on both K and B.
         largest_delay_s: The longest stable delay, s.
         held_damping: b of device and hand, N·s/m.
-        is_passive: Whether b is enough for passivity, whatever else the hand does.
+        is_passive: Whether b is enough for passivity.
     """
 
     grip: str
@@ -102,7 +100,7 @@ class AxisDesign:
     __repr__ = one_line
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers, words and lists only."""
+        """Returns the fields, ready for JSON."""
         return to_plain_data(self)
 
 
@@ -123,11 +121,12 @@ def design_axis(
 
     Args:
         device: The device without a hand.
-        grips: Every way in which it may be held, by name.
+        grips: Hands that may hold it, by name.
         period_s: T, s.
         delay_s: t_d on top of the hold, s.
         margin: Factor up to which the gains must be stable, above 1.
-        passive_in: The grip in which the coupling must be passive too, if any.
+        passive_in: Name of a grip in which the coupling must also be passive; None for
+            no such grip.
 
     Raises:
         ValueError: No stiffness has the margin.
@@ -174,7 +173,7 @@ def make_wall(
     delay_s: float,
     wall_damping: float = 0.0,
 ) -> SampledWall:
-    """Returns the coupling with its tool held still, the stiffest wall it can be."""
+    """Returns the coupling with its tool held still, which makes it stiffest."""
     return SampledWall(
         mass=device.mass,
         damping=device.damping,
@@ -197,7 +196,7 @@ def _limit_damping(
 ) -> dict[str, float]:
     """Returns the largest B that each limit allows, by the limit in words."""
     per_beta = device.mass / period_s
-    # More than the damping of the stiffest wall costs stiffness.
+    # Damping above that of the stiffest wall costs stiffness.
     whole = math.ceil(delay_s / period_s - 1e-9)
     limits = {
         "the apparent mass of the device at this rate": _LARGEST_BETA * per_beta,

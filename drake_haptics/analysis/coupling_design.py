@@ -48,7 +48,7 @@ def plot_axis_design(
     delay_s: float,
     units: tuple[str, str],
 ) -> None:
-    """Draws K over B: limits of the device let go, passivity, and chosen gains."""
+    """Draws K over B: stability without a hand, passivity, and the chosen gains."""
     device = design.device
     B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
     free = make_wall(device, AxisHand(), period_s, delay_s)
@@ -62,7 +62,7 @@ def plot_axis_design(
         for m in design.margins
     ]
     top = min(1.1 * max(stable), _HEADROOM * design.stiffness)
-    # Lines that would be out of sight stay out of the legend.
+    # Lines outside the axes must not be in the legend.
     visible = [
         (margins, K)
         for margins, K in passive
@@ -101,7 +101,7 @@ class CouplingDesign:
         coupling: The gains, as a scene has them.
         period_s: T, s.
         delay_s: t_d on top of the hold's half period, s.
-        margin: Factor up to which the gains are stable, as the design asked.
+        margin: Factor up to which the gains are stable.
         translation: Design in N/m and N·s/m.
         rotation: Design in N·m/rad and N·m·s/rad; None for a device without torque.
     """
@@ -116,7 +116,7 @@ class CouplingDesign:
     __repr__ = one_line
 
     def describe(self) -> str:
-        """Returns the gains and what limits them, a line each."""
+        """Returns lines of text with the gains and what limits them."""
         lines = [f"At {1.0 / self.period_s:g} Hz and {1e3 * self.delay_s:g} ms delay:"]
         kinds = [("", self.translation, "N/m", "N·s/m")]
         if self.rotation is not None:
@@ -140,8 +140,8 @@ class CouplingDesign:
         """Draws the stable and the passive region over B and K, and the chosen gains.
 
         Args:
-            axes: Axes for the translation; if not given, new ones, with those of the
-                rotation beside them.
+            axes: Axes for the translation. Defaults to new ones, next to those of the
+                rotation.
 
         Returns:
             The axes of the translation.
@@ -170,7 +170,7 @@ class CouplingDesign:
         return axes
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers, words and lists only."""
+        """Returns the fields, ready for JSON."""
         return to_plain_data(self)
 
 
@@ -188,16 +188,18 @@ def suggest_coupling(
     The damping B is at most what the device is rated for, and B T/m at most 0.2; the
     stiffness is (b + B)/(T/2 + t_d) over the margin, with the damping b of the device
     alone, at most what it is rated for, and lowered until the exact eigenvalues have
-    the margin in every grip of `HAND_GRIPS`, none included: a handle may be let go. The
-    tool is assumed to be held still by a rigid wall, which makes the coupling stiffest.
+    the margin in every grip of `HAND_GRIPS`, including "none", because a handle may be
+    let go. The tool is assumed to be held still by a rigid wall, which makes the
+    coupling stiffest.
 
     Args:
-        device: Name of a preset, or the preset, with the arm at its default angles; or
-            a handle without a hand, as `calc_held_handle` returns for any plant at its
-            default angles, which has no ratings.
+        device: Name of a preset, or a preset, whose arm is taken at its default angles;
+            or a handle without a hand, which has no ratings, as `calc_held_handle`
+            returns for any plant.
         rate_hz: Rate of the haptic loop, Hz.
-        hand: A grip of `HAND_GRIPS` in which the coupling must also be passive: then
-            B is lower. Where not given, the design only says which grips make it so.
+        hand: Name of a grip of `HAND_GRIPS` in which the coupling must also be passive,
+            which lowers B. Defaults to no such grip; the design then only reports in
+            which grips the coupling is passive.
         delay_s: t_d on top of the hold's half period, s.
         margin: Factor up to which the gains must be stable, above 1.
 

@@ -1,4 +1,4 @@
-"""The delay margin: how late a loop's force may come before the loop is unstable."""
+"""Calculates the delay margin: how late a loop's force may come."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.stability_limit import calc_growth
 
-# Steps between the delays that are tried before the edge is bracketed, in periods and
-# as a share of the delay.
+# Steps between delays until the edge is bracketed, in periods and as a share of the
+# delay.
 _STEP, _STEP_SHARE = 0.25, 0.2
 # Longest delay that is tried, in periods.
 LONGEST_DELAY = 50.0
@@ -20,10 +20,11 @@ _TOLERANCE = 1e-4
 
 @on_one_blas_thread
 def calc_delay_margin(loop: HeldLoop) -> float:
-    """Returns the further delay of the device's force at which motions grow, s.
+    """Returns the additional delay of the device's force at which motions grow, s.
 
-    The wrench that the hold samples is shown later by that delay; all else stays.
-    Infinite where 50 periods are not enough, 0 where the loop is unstable as it is.
+    The wrench that the hold samples is shown later by that delay; nothing else changes.
+    The result is infinite if 50 periods are not enough, and 0 if the loop is already
+    unstable.
 
     Args:
         loop: The loop at its equilibrium.
@@ -44,14 +45,14 @@ def calc_delay_margin(loop: HeldLoop) -> float:
 
 
 def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
-    """Returns the map of one period with the device's wrench shown later.
+    """Returns the map of one period with the device's wrench delayed.
 
-    The state is that of the linearization, then the wrenches (6 each) that were
-    sampled and are not shown yet, the newest first.
+    The state is that of the linearization, then the wrenches (6 each) that were sampled
+    and not yet shown, newest first.
 
     Args:
         loop: The loop at its equilibrium.
-        delay: Delay in periods, any number from 0 on.
+        delay: Delay in periods, at least 0; it need not be whole.
 
     Raises:
         ValueError: The delay is negative.
@@ -82,7 +83,7 @@ def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
     update[n:] = queue[: 6 * waiting]
     if late == 0.0:
         return flow(1.0) @ update
-    # Until it is late enough the wrench before this one is still shown.
+    # Until the delay has passed, the previous wrench is still shown.
     update[shown] = queue[6 * whole + 6 : 6 * whole + 12]
     switch = np.eye(size)
     switch[shown] = np.eye(size)[n + 6 * whole : n + 6 * whole + 6]

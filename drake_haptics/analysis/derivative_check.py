@@ -1,4 +1,4 @@
-"""Finds derivatives that a system dropped on the way, by differences in doubles."""
+"""Finds derivatives that a system has lost, by differences in doubles."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-# Steps relative to a coordinate's size: the large ones for noisy functions, the small
-# ones for curved ones. The best counts.
+# Steps relative to a coordinate's size: large ones for noisy functions, small ones for
+# curved ones. The best one counts.
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
-# Lost derivatives disagree by their own size; smooth functions agree to 1e-6.
+# Lost derivatives differ by their size; smooth functions agree to 1e-6.
 _TOLERANCE = 1e-4
-# How far beside a point derivatives are checked, relative to a coordinate's size: more
-# than the steps that matter.
+# Distance from the point at which derivatives are checked, relative to a coordinate's
+# size; larger than the steps that matter.
 _BESIDE = 3e-5
 # Differences of values cannot be finer than this.
 _ROUND_OFF = 16.0 * np.finfo(float).eps
@@ -27,8 +27,8 @@ def check_derivatives(
 ) -> None:
     """Compares a Jacobian with central differences along one random direction.
 
-    A Python system that calculates in doubles under AutoDiffXd loses derivatives
-    silently; this finds each row with a relative error above 1e-4.
+    A Python system that calculates in doubles under AutoDiffXd silently loses
+    derivatives; this function finds each row with a relative error above 1e-4.
 
     Args:
         function: Function of a step (n,) from the point that returns the values (p,).
@@ -38,7 +38,7 @@ def check_derivatives(
         column_names: (n,) names of the coordinates.
 
     Raises:
-        ValueError: They disagree; names rows and columns.
+        ValueError: They disagree; the message names rows and columns.
     """
     wrong = find_wrong_rows(function, jacobian, sizes)
     if not wrong.any():
@@ -62,16 +62,16 @@ def find_wrong_rows(
 ) -> np.ndarray:
     """Returns which rows disagree with differences, (p,); arguments as above."""
     rng = np.random.default_rng(20)
-    # No coordinate is left out by a step that happens to be small.
+    # No step is so small that a coordinate is left out.
     direction = rng.uniform(0.5, 1.0, len(sizes)) * rng.choice([-1.0, 1.0], len(sizes))
     return _compare(function, jacobian, sizes * direction)
 
 
 def move_beside(point: np.ndarray, side: float = 1.0) -> np.ndarray:
-    """Returns a point (n,) a little beside another.
+    """Returns a point (n,) near another.
 
-    At an equilibrium things are at rest, flush or symmetric, so that it is often on a
-    kink, where differences to both sides mix two slopes. Beside it there is one slope.
+    At an equilibrium bodies are at rest, flush or symmetric, so that it is often at a
+    kink, where central differences mix two slopes. Next to it there is only one slope.
 
     Args:
         point: (n,) point to move away from.

@@ -1,4 +1,4 @@
-"""The systems inside a Diagram: names, timings, state, and their twin in AutoDiffXd."""
+"""Lists the systems in a Diagram, their timings and states; converts to AutoDiffXd."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Timing:
 
 
 def walk_systems(system: System) -> Iterator[System]:
-    """Yields a system and, if it is a Diagram, all that it holds, depth first."""
+    """Yields a system and, if it is a Diagram, all systems in it, depth first."""
     yield system
     if isinstance(system, _DIAGRAMS):
         for part in system.GetSystems():
@@ -48,12 +48,12 @@ def walk_systems(system: System) -> Iterator[System]:
 
 
 def walk_leaves(system: System) -> Iterator[System]:
-    """Yields the systems that hold no others, in the order of Drake's states."""
+    """Yields the leaf systems, in the order of Drake's states."""
     return (part for part in walk_systems(system) if not isinstance(part, _DIAGRAMS))
 
 
 def calc_path(root: System, system: System) -> str:
-    """Returns the name of a system inside a root, as "arm/controller"."""
+    """Returns the path of a system inside a root, such as "arm/controller"."""
     if system is root:
         return system.get_name() or type(system).__name__
     inner = system.GetSystemPathname().removeprefix(root.GetSystemPathname())
@@ -71,7 +71,7 @@ def find_timings(root: System, context: Context) -> list[Timing]:
         if unique is not None:
             found.append(Timing(unique.period_sec(), unique.offset_sec(), name))
             continue
-        # pydrake lists several timings of one system only in this error's text.
+        # pydrake lists several timings of one system only in the text of this error.
         try:
             leaf.EvalUniquePeriodicDiscreteUpdate(leaf.GetMyContextFromRoot(context))
         except RuntimeError as error:
@@ -88,9 +88,9 @@ class StateLayout:
 
     Attributes:
         names: (n,) names of the states. A `MultibodyPlant` names its own coordinates,
-            as "plant/tool_x", and so does a system with a method `list_state_names()`;
-            other states are "path/xc[0]" where continuous and "path/xd[0]" where
-            discrete ("path/xd1[0]" for the first of the second group).
+            such as "plant/tool_x", and so does a system with a method
+            `list_state_names()`; other states are "path/xc[0]" if continuous and
+            "path/xd[0]" if discrete ("path/xd1[0]" for the first of the second group).
         quaternions: Positions in the state of the four numbers of each unit
             quaternion of a `MultibodyPlant`.
     """
@@ -106,7 +106,7 @@ def find_state_layout(root: System) -> StateLayout:
     context = root.CreateDefaultContext()
     names: list[str] = []
     quaternions: list[tuple[int, ...]] = []
-    # Drake's diagrams put all continuous states first, each in the systems' order.
+    # Diagrams put all continuous states first, each kind in the systems' order.
     for kind in ("xc", "xd"):
         for leaf in walk_leaves(root):
             sizes = _list_sizes(kind, leaf.GetMyContextFromRoot(context))
@@ -131,7 +131,7 @@ def _list_sizes(kind: str, context: Context) -> list[int]:
 
 
 def _list_own_names(leaf: System) -> list[str]:
-    """Returns the names that a system has for its state, a plant's short if unique."""
+    """Returns the names of a system's states; those of a plant short if unique."""
     if hasattr(leaf, "list_state_names"):
         return leaf.list_state_names()
     if not isinstance(leaf, MultibodyPlant):
@@ -154,7 +154,7 @@ def _shift_quaternions(plant: MultibodyPlant, start: int) -> list[tuple[int, ...
 
 
 class AutoDiffClone:
-    """A system converted to AutoDiffXd once, following contexts of the original.
+    """A system converted once to AutoDiffXd, which follows contexts of the original.
 
     Attributes:
         system: The AutoDiffXd twin.
@@ -175,13 +175,13 @@ class AutoDiffClone:
         self.context = self.system.CreateDefaultContext()
 
     def follow(self, context: Context) -> None:
-        """Takes time, state, parameters and fixed inputs from an original's context.
+        """Copies time, state, parameters and fixed inputs from the original's context.
 
-        Systems with a method `prepare_conversion(context)` first write what they
-        remember outside of the context into their parameters in it.
+        Systems with a method `prepare_conversion(context)` first store in their
+        parameters what a cache remembers.
 
         Args:
-            context: A root context of the original that may be changed so.
+            context: Root context of the original, which this may change.
         """
         for part in walk_systems(self._original):
             if hasattr(part, "prepare_conversion"):

@@ -1,4 +1,4 @@
-"""Finds where a diagram stays as it is: a fixed point of its sampled motion."""
+"""Finds equilibria of a diagram: fixed points of its sampled motion."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ from drake_haptics.analysis.sampled_map import (
 )
 from drake_haptics.common.value_checks import check_at_least, check_positive
 
-# Singular values below this part of the largest are directions that nothing holds:
-# quaternion lengths, memories of friction. No step goes along them.
+# Singular values below this part of the largest belong to directions that nothing
+# holds, such as quaternion lengths and memories of friction; steps avoid them.
 _RANK = 1e-11
 # Levenberg's damping of a step, relative to the largest singular value.
 _FIRST_DAMPING = 1e-8
 _LARGEST_DAMPING = 1e2
 _RAISE = 10.0
-# A step must lower the residual by some part of itself.
+# A step must lower the residual by at least this part.
 _LEAST_DECREASE = 1e-4
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A state that one period leaves as it is.
+    """A state that one period does not change.
 
     Attributes:
         context: Root context at the equilibrium; only its state differs from the
@@ -64,31 +64,33 @@ def find_equilibrium(
     *,
     period_s: float | None = None,
     settle_s: float = 0.0,
-    tolerance: float = 1e-10,
+    tolerance: float = 1e-9,
     max_iterations: int = 50,
 ) -> Equilibrium:
-    """Finds a state near the context's that one period leaves as it is.
+    """Finds a state near the context's that one period does not change.
 
     x_d⁺ = x_d for all periodic discrete updates, of one rate or several, and ẋ_c = 0,
-    with time and inputs as they are in the context. Newton's method with AutoDiffXd
-    derivatives and steps of least length, damped as Levenberg and Marquardt do (Nocedal
-    and Wright, Numerical Optimization, 2nd ed., section 10.3) where a full step does
-    not help. Quaternions of MultibodyPlants keep unit length.
+    with time and inputs as they are in the context. It uses Newton's method with
+    AutoDiffXd derivatives and steps of least length, damped as by Levenberg and
+    Marquardt (Nocedal and Wright, Numerical Optimization, 2nd ed., section 10.3) if a
+    full step does not help. Quaternions of MultibodyPlants keep unit length.
 
     Args:
         diagram: Any system that converts to AutoDiffXd.
         context: Its root context; it is not changed.
-        period_s: Time over which a rate counts as a change, s; if not given the
-            shortest period, or 1 s where nothing is updated periodically.
-        settle_s: Duration of a simulation before the search, s; for systems that do not
-            depend on time.
-        tolerance: Bound of `Equilibrium.residual`.
+        period_s: Time that converts a rate to a change, s. Defaults to the shortest
+            period, or to 1 s if nothing is updated periodically.
+        settle_s: Duration of a simulation before the search, s; only for systems that
+            do not depend on time.
+        tolerance: Bound of `Equilibrium.residual`; under the constraint law a flush
+            contact does not get below 3e-10.
         max_iterations: Bound of `Equilibrium.iterations`.
 
     Raises:
-        ValueError: No equilibrium was reached: says how far it got and what to try; a
-            system has abstract state or no AutoDiffXd twin; `settle_s` is given and
-            the system depends on time; an argument is out of its bounds.
+        ValueError: No equilibrium was reached, and the message says how close the
+            search came and what to try; a system has abstract state or no AutoDiffXd
+            twin; `settle_s` is given and the system depends on time; or an argument is
+            out of range.
     """
     check_system_and_context(diagram, context)
     if period_s is not None:
@@ -133,11 +135,12 @@ class _Search:
         return float(np.where(np.isfinite(relative), relative, np.inf).max(initial=0.0))
 
     def step(self) -> bool:
-        """Goes to a better state; returns False if there is not one on the way."""
+        """Moves to a better state; returns False if there is not one along the step."""
         if not np.isfinite(self._change).all():
             return False
         self.iterations += 1
-        # In units of the coordinates' sizes, so that a step's length means something.
+        # In units of the coordinates' sizes, so that the length of a step is
+        # meaningful.
         J = self._calc_jacobian() * self._sizes / self._sizes[:, np.newaxis]
         if not np.isfinite(J).all():
             return False
@@ -182,7 +185,7 @@ class _Search:
         return x
 
     def _calc_change(self, x: np.ndarray) -> np.ndarray:
-        """Returns [T ẋ_c; x_d⁺ - x_d], NaN where a system says it diverged."""
+        """Returns [T ẋ_c; x_d⁺ - x_d], or NaN if a system reports that it diverged."""
         u, n_c = self._one_period.u, self._one_period.num_continuous
         try:
             values = self._one_period.calc(x, self._one_period.hold(x, u), u)
@@ -223,7 +226,7 @@ def _settle(
                 " changes with it: settle by a simulation of your own up to the time"
                 " of interest, and give its context"
             )
-    # What systems remember of the simulation stays in the clone.
+    # Caches of the simulation stay in the clone.
     settled = context.Clone()
     Simulator(diagram, settled).AdvanceTo(time_s + settle_s)
     settled.SetTime(time_s)

@@ -1,4 +1,4 @@
-"""The exact stability boundary of a sampled spring and damper with whole delays.
+"""Calculates the exact stability boundary of a sampled spring and damper.
 
 On a free mass m without physical damping, with α = K T²/m, β = B T/m, the backward
 difference as velocity, and d periods of delay, the loop's characteristic polynomial is
@@ -11,9 +11,9 @@ Divided by z (z + 1), and with (z - 1)/z = 2 j sin(θ/2) e^(-jθ/2), they give
     α = 4 tan²(θ/2) cos((d + 1) θ),
     β = 2 sin(θ/2) sin((d + ½) θ) / cos²(θ/2),
 
-which for 0 < θ < π/(2 (d + 1)) is the edge of the stable region beside α = 0. For d = 0
-it is Jury's α = 2 β (2 - β)/(2 + β), as `sampled_spring.calc_sampled_stiffness` has
-it; for small θ it is the law of Gil et al., α = β/(½ + d).
+which for 0 < θ < π/(2 (d + 1)) and with α = 0 bounds the stable region. For d = 0 it is
+Jury's α = 2 β (2 - β)/(2 + β), as in `sampled_spring.calc_sampled_stiffness`; for small
+θ it is the law of Gil et al., α = β/(½ + d).
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BoundaryPoint:
-    """A point of the boundary: a spring and damper that oscillate forever.
+    """A point of the boundary, where the oscillation neither grows nor decays.
 
     Attributes:
         alpha: K T²/m.
         beta: B T/m.
-        angle: θ, the turn of the oscillation per period, rad.
+        angle: θ, the phase of the oscillation per period, rad.
     """
 
     alpha: float
@@ -56,8 +56,8 @@ class ExactBoundary:
 
     Attributes:
         delay_samples: d.
-        beta: B T/m, (n,), rising from 0.
-        alpha: K T²/m, (n,): the stiffness that is no longer stable.
+        beta: B T/m, (n,), increasing from 0.
+        alpha: K T²/m, (n,), from which the loop is unstable.
         peak: Point of the largest stiffness.
     """
 
@@ -84,7 +84,7 @@ class ExactBoundary:
         return axes
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers and lists only."""
+        """Returns the fields, ready for JSON."""
         return to_plain_data(self)
 
 
@@ -93,7 +93,8 @@ def calc_exact_boundary(delay_samples: int, points: int = 200) -> ExactBoundary:
 
     Args:
         delay_samples: d, whole periods on top of the hold's half.
-        points: Points of the curve, from β = 0 to where no stiffness is stable.
+        points: Number of points of the curve, from β = 0 to where no stiffness is
+            stable.
 
     Raises:
         ValueError: The delay is negative or not a whole number, or points less than 2.
@@ -110,17 +111,17 @@ def calc_exact_boundary(delay_samples: int, points: int = 200) -> ExactBoundary:
 
 
 def calc_boundary_point(angle: float, delay_samples: int) -> BoundaryPoint:
-    """Returns the point of the boundary that oscillates with θ rad per period.
+    """Returns the point of the boundary where the phase advances by θ per period.
 
     Raises:
-        ValueError: The delay is negative or no whole number, or θ is not in
-            [0, π/(2 (d + 1))].
+        ValueError: The delay is negative or not a whole number, or θ is not in [0, π/(2
+            (d + 1))].
     """
     end = _end_of_angles(delay_samples)
     if not 0.0 <= angle <= end:
         raise ValueError(f"angle must be in [0, {end}], is {angle}")
     half = angle / 2.0
-    # Exactly zero at the end, where the cosine is so but for round-off.
+    # The cosine at the end is zero only up to round-off.
     cosine = 0.0 if angle == end else math.cos((delay_samples + 1) * angle)
     return BoundaryPoint(
         alpha=4.0 * math.tan(half) ** 2 * cosine,
@@ -133,12 +134,12 @@ def calc_boundary_point(angle: float, delay_samples: int) -> BoundaryPoint:
 
 
 def calc_boundary_peak(delay_samples: int) -> BoundaryPoint:
-    """Returns the stiffest spring that any damper stabilizes.
+    """Returns the stiffest spring that a damper can stabilize.
 
     dα/dθ = 0 is cot((d + 1) θ) = (d + 1)/2 · sin θ; for d = 0, α = 12 - 8 √2.
 
     Raises:
-        ValueError: The delay is negative or no whole number.
+        ValueError: The delay is negative or not a whole number.
     """
     n = delay_samples + 1
 
@@ -152,10 +153,10 @@ def calc_boundary_peak(delay_samples: int) -> BoundaryPoint:
 def calc_exact_alpha(beta: float, delay_samples: int) -> float:
     """Returns α = K T²/m below which the loop is stable with β = B T/m.
 
-    Zero where no stiffness is stable: β = 0, or more damping than the delay allows.
+    It is zero if no stiffness is stable: β = 0, or more damping than the delay allows.
 
     Raises:
-        ValueError: The delay is negative or no whole number, or β is negative.
+        ValueError: The delay is negative or not a whole number, or β is negative.
     """
     check_at_least(0, beta=beta)
     end = _end_of_angles(delay_samples)
@@ -165,13 +166,13 @@ def calc_exact_alpha(beta: float, delay_samples: int) -> float:
     def excess(angle: float) -> float:
         return calc_boundary_point(angle, delay_samples).beta - beta
 
-    # β rises with θ: both of its sines and 1/cos² do.
+    # β increases with θ, as both of its sines and 1/cos² do.
     angle = brentq(excess, 0.0, end, xtol=1e-15)
     return calc_boundary_point(angle, delay_samples).alpha
 
 
 def _end_of_angles(delay_samples: int) -> float:
-    """Returns the θ at which the boundary comes back to α = 0."""
+    """Returns the θ at which the boundary returns to α = 0."""
     if delay_samples < 0 or delay_samples != int(delay_samples):
         raise ValueError(
             f"delay_samples must be a whole number, at least 0, is {delay_samples}"

@@ -1,4 +1,4 @@
-"""The impedance of a virtual scene that the device feels at its handle."""
+"""Calculates the impedance of a virtual scene at the device's handle."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 class FeltImpedance:
     """The wrench that resists displacements of the handle, as a discrete system.
 
-    Input: displacement (6,) of the handle, [rotation vector (rad); translation (m)]
-    about its origin, sampled. Output: the wrench (6,) [N·m; N] against it. The velocity
-    that the coupling damps is the backward difference of the displacements, as from
-    encoders.
+    The input is the sampled displacement (6,) of the handle, [rotation vector (rad);
+    translation (m)] about its origin. The output is the wrench (6,) [N·m; N] against
+    it. The velocity that the coupling damps is the backward difference of the
+    displacements, as from encoders.
 
     A force that is not the gradient of a potential drives a hand that moves in circles,
     however slowly, and no damper makes it passive: at frequency ω it would take K_c/ω.
     Penalty forces of meshes have a small part of this kind, since the normal does not
-    turn exactly as the depth changes. That part of the stiffness is kept apart
-    (`curl`), and so is the part that looks like it only because rotations do not
-    commute (a torque fixed in the world turns with nothing).
+    turn exactly as the depth changes. That part of the stiffness is separate (`curl`),
+    and so is the part that looks like it only because rotations do not commute (a
+    torque fixed in the world does not turn with the handle).
 
     Attributes:
         A: (n, n) state matrix.
         B: (n, 6) input matrix.
         C: (6, n) output matrix.
-        D: (6, 6) feedthrough matrix, without `curl` and the torque's own part.
+        D: (6, 6) feedthrough matrix, without `curl` and the part of the torque.
         period_s: T, s.
         curl: (6, 6) antisymmetric part of the stiffness at standstill.
         handle_damping: (6, 6) damping of the device's joints and of the hand, at the
@@ -57,13 +57,13 @@ class FeltImpedance:
 
 @on_one_blas_thread
 def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
-    """Opens a loop at the handle.
+    """Calculates the impedance that a loop shows at the handle.
 
     Args:
         loop: The loop of a scene with a simulated device.
 
     Raises:
-        ValueError: The arm is singular there.
+        ValueError: The arm is singular at the equilibrium.
     """
     linear = loop.linearization
     n_c = loop.context.num_continuous_states()
@@ -76,7 +76,7 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
             "the arm is singular where it is held: hold the scene at another time"
         ) from error
     T = linear.period_s
-    # Discrete rows of A are the update itself: they do not change in between.
+    # Discrete rows of A are the update itself: the state does not change in between.
     update = linear.A[n_c:]
     by_displacement = (update[:, :n_q] + update[:, n_q:n_c] / T) @ per_displacement
     by_last = -update[:, n_q:n_c] / T @ per_displacement
@@ -127,14 +127,14 @@ def _calc_antisymmetric_stiffness(
     A: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray
 ) -> np.ndarray:
     """Returns the antisymmetric part of H(1), the stiffness at standstill (6, 6)."""
-    # Where friction sticks I - A is singular, but its displacement is determined.
+    # If friction sticks, I - A is singular, but the displacement is still determined.
     settled = np.linalg.lstsq(np.eye(len(A)) - A, B, rcond=1e-10)[0]
     stiffness = C @ settled + D
     return (stiffness - stiffness.T) / 2.0
 
 
 def _calc_torque_part(torque: np.ndarray) -> np.ndarray:
-    """Returns the stiffness that a torque adds, since rotations do not commute.
+    """Returns the stiffness that a torque adds because rotations do not commute.
 
     At the rotation vector θ a potential's torque is -∂U + ½ θ × τ to first order: the
     inverse left Jacobian of SO(3), transposed.

@@ -1,6 +1,6 @@
-"""The loop of a held scene with any coupling, linearized at rest.
+"""Linearizes the loop of a held scene at rest, with any coupling.
 
-The hand takes aim again, so that other gains hold the tool in the same contact.
+The hand's pose is adapted, so that other gains hold the tool in the same contact.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from drake_haptics.systems.arm.simulated_arm import (
     solve_arm_positions,
 )
 
-# Springs of rotation cannot be turned further, rad: beyond half a turn they pull back.
+# Largest angle of a rotational spring, rad; beyond half a turn it would pull back.
 _LARGEST_TWIST = 2.5
 # Loads smaller than this need no spring to hold them, N and N·m.
 _NO_LOAD = 1e-9
@@ -56,7 +56,7 @@ _NO_LOAD = 1e-9
 
 @dataclass(frozen=True)
 class _Aim:
-    """Poses of handle and hand, and the wrench that the handle is shown."""
+    """Poses of handle and hand, and the wrench on the handle."""
 
     X_WH: RigidTransform
     X_WP: RigidTransform
@@ -66,18 +66,18 @@ class _Aim:
 def build_with_same_load(
     held: HeldScene, coupling: CouplingParameters | None = None
 ) -> tuple[HapticDiagram, Context]:
-    """Builds a held scene with other gains, the tool pressed as before.
+    """Builds a held scene with other gains and the same load on the tool.
 
-    A stiffer coupling, stretched as far, would press harder, and the tool would rest
+    A stiffer coupling with the same stretch would press harder, and the tool would rest
     elsewhere. So handle and hand are moved until their springs load the tool with the
     same wrench.
 
     Returns:
-        The diagram, and its root context at rest but for round-off.
+        The diagram, and its root context at rest up to round-off.
 
     Raises:
         ValueError: A spring without stiffness would have to hold a load, a spring would
-            turn too far, or the device does not reach so far.
+            turn too far, or the pose is out of the device's reach.
         SceneError: The hand would leave the device's workspace.
     """
     coupling = coupling or held.scene.coupling
@@ -90,7 +90,7 @@ def build_with_same_load(
     haptic = build_without_scene_warnings(scene)
     context = haptic.diagram.CreateDefaultContext()
     context.SetTimeStateAndParametersFrom(held.context)
-    # The gains are parameters too: those of the held scene were just copied.
+    # Gains are parameters, too, so those of the held scene were just copied.
     write_live_values(haptic, context, scene)
     _set_handle(haptic, scene, context, aim)
     return haptic, context
@@ -131,7 +131,7 @@ def _stretch(
     stiffness: float,
     whose: str,
 ) -> RigidTransform:
-    """Returns the pose of a spring's other end at which it loads B so."""
+    """Returns the pose of a spring's other end at which it loads B as given."""
     for load, k in [(torque, rotational_stiffness), (force, stiffness)]:
         if k == 0.0 and np.linalg.norm(load) > _NO_LOAD:
             raise ValueError(
@@ -154,7 +154,7 @@ def _stretch(
 
 
 def _set_handle(haptic: HapticDiagram, scene: Scene, root: Context, aim: _Aim) -> None:
-    """Moves the arm, and sets the wrench that the handle is shown."""
+    """Moves the arm, and sets the wrench that the device renders."""
     device = haptic.loop.device
     plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
     context = plant.GetMyMutableContextFromRoot(root)
@@ -170,7 +170,7 @@ def _set_handle(haptic: HapticDiagram, scene: Scene, root: Context, aim: _Aim) -
     hold.GetMyMutableContextFromRoot(root).SetDiscreteState(shown)
 
 
-# A motion of 250 Hz turns by 0.3 rad in such a step of third order.
+# An oscillation of 250 Hz advances by 0.3 rad in a step of the third-order integrator.
 _STEPS_PER_TICK = 5
 
 
@@ -181,7 +181,7 @@ class HeldLoop:
     Attributes:
         haptic: The diagram.
         context: Its root context, at the equilibrium.
-        linearization: Over one period, about it.
+        linearization: Linearization over one period about the equilibrium.
     """
 
     haptic: HapticDiagram
@@ -192,12 +192,12 @@ class HeldLoop:
 
     @property
     def growth(self) -> float:
-        """Factor by which a tick multiplies the fastest growing motion."""
+        """Factor by which the fastest growing motion is multiplied per tick."""
         return calc_growth(self.linearization.eigenvalues())
 
     @on_one_blas_thread
     def measure_growth(self) -> float:
-        """Returns the growth per tick that two simulations show, started side by side.
+        """Returns the growth per tick from two simulations with nearby initial states.
 
         Raises:
             ValueError: The motion cannot be followed; see
@@ -217,7 +217,7 @@ class HeldLoop:
         )
 
     def _make_simulator(self, context: Context) -> Simulator:
-        """Returns a simulator that is exact enough to be compared with eigenvalues."""
+        """Returns a simulator that is accurate enough to compare with eigenvalues."""
         simulator = Simulator(self.haptic.diagram, context)
         step_s = self.linearization.period_s / _STEPS_PER_TICK
         ResetIntegratorFromFlags(simulator, "runge_kutta3", step_s)
@@ -229,14 +229,14 @@ class HeldLoop:
 def analyze_held_scene(
     held: HeldScene, coupling: CouplingParameters | None = None
 ) -> HeldLoop:
-    """Linearizes the loop of a held scene where its tool is pressed as it was held.
+    """Linearizes the loop of a held scene with the same load on the tool.
 
     Args:
         held: The result of `hold_scene`.
-        coupling: Gains; the scene's own if not given.
+        coupling: Gains of the coupling. Defaults to the scene's.
 
     Raises:
-        ValueError: There is no equilibrium near the place, or no derivative.
+        ValueError: There is no equilibrium nearby, or no derivative.
     """
     haptic, context = build_with_same_load(held, coupling)
     context = find_equilibrium(haptic.diagram, context).context
@@ -254,7 +254,8 @@ def replace_gains(
 class CouplingGrowth:
     """Calculates the growth of a held scene's loop for a stiffness and a damping.
 
-    It is for `calc_z_width`: it can be pickled, and each process holds the scene once.
+    It is made for `calc_z_width`: it can be pickled, and each process holds the scene
+    once.
 
     Attributes:
         scene: The scene.
@@ -284,7 +285,7 @@ class CouplingGrowth:
         return {"spectral_radius": growth}
 
 
-# One scene at a time: a diagram that Python systems are part of is never freed.
+# Only one scene is kept: a diagram with Python systems is never freed.
 _HELD: dict[str, HeldScene] = {}
 
 

@@ -1,4 +1,4 @@
-"""A scene whose hand stops on its way and holds still, to be analyzed there."""
+"""Stops the hand of a scene on its path, to analyze the scene there."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ from drake_haptics.systems.device.haptic_device import HapticDevice
 
 # Shortest time in which a hand stops.
 _SHORTEST_STOP_S = 0.05
-# Number of places at which the tool is held to find one where it rests, and the
-# shortest time between them.
+# Number of places at which the tool is held until it rests at one, and the shortest
+# time between them.
 _MOST_PLACES = 6
 _APART_S = 0.05
 # Number of softer couplings that are tried for a loop that does not settle.
@@ -46,7 +46,7 @@ _IMMOVABLE_KG = 1e15
 
 @dataclass(frozen=True)
 class HeldScene:
-    """A scene that stands still, its hand holding the tool at a place on its path.
+    """A scene at rest, whose hand holds the tool at a place on its path.
 
     Attributes:
         scene: Scene whose path ends at that place.
@@ -68,12 +68,11 @@ class HeldScene:
     __repr__ = one_line
 
     def against_rigid_wall(self) -> HeldScene:
-        """Returns the held scene with a tool that nothing moves.
+        """Returns the held scene with a tool that cannot move.
 
-        A wall that does not give way is the worst that a device can feel. The coupling
-        still draws the handle to where the tool is; the tool is too heavy to follow,
-        and its weight, if the scene has one, is not felt. `analyze_held_scene` gives
-        the loop.
+        A rigid wall is the worst case for stability. The coupling still pulls the
+        handle to the tool; the tool is too heavy to follow, and gravity is left out.
+        `analyze_held_scene` returns the loop.
         """
         scene = replace(
             self.scene,
@@ -85,10 +84,10 @@ class HeldScene:
 
 @on_one_blas_thread
 def find_firmest_contact(scene: Scene) -> float:
-    """Returns the time at which the tool is pressed most along the hand's path, s.
+    """Returns the time at which the tool is pressed hardest along the hand's path, s.
 
-    One lap of the path is simulated. If the tool touches nothing, that is the time at
-    which it is nearest to something; if nothing is near, the path's end.
+    One lap of the path is simulated. If the tool touches nothing, the result is the
+    time at which it is nearest to an object; if nothing is near, the end of the path.
 
     Raises:
         drake_haptics.simulation.run.RunError: The scene diverges before it touches.
@@ -106,19 +105,19 @@ def hold_scene(
 ) -> HeldScene:
     """Stops a scene's hand on its path and lets the tool come to rest.
 
-    The way there is simulated as in a run, so that the tool touches from the side that
-    it came from. Where the scene's own coupling does not settle, softer ones are tried;
-    `drake_haptics.analysis.held_loop.build_with_same_load` then restores the scene's
-    own.
+    The path until then is simulated as in a run, so that the tool touches from the side
+    from which it came. If the tool does not settle with the scene's coupling, softer
+    ones are tried; `drake_haptics.analysis.held_loop.build_with_same_load` then
+    restores the scene's.
 
     Args:
         scene: The scene to hold.
         time_s: Time at which the hand stops, s; on a periodic path, in the first lap.
-            If not given, the time of the firmest contact at which the tool comes to
-            rest: on a ridge between two facets it may rock from one to the other for
-            ever.
+            Defaults to the time of the firmest contact at which the tool comes to rest;
+            on a ridge it may rock between two facets forever.
         settle_s: Time for the tool to come to rest, s.
-        progress: Called with the current work and its share that is done, in [0, 1].
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
 
     Raises:
         ValueError: The time is not on the path, the tool does not come to rest, or a
@@ -126,7 +125,7 @@ def hold_scene(
         SceneError: The scene cannot be built.
     """
     report = progress or (lambda what, share: None)
-    # Without derivatives the search for an equilibrium would fail without saying why.
+    # Otherwise the search for an equilibrium would fail without a reason.
     check_conversion(build_without_scene_warnings(scene).diagram)
     report("looking for the firmest contact", 0.0)
     places = _find_firm_places(scene) if time_s is None else [time_s]
@@ -151,12 +150,15 @@ def _find_firm_places(scene: Scene) -> list[float]:
     """Returns times at which the tool is pressed, the firmest first."""
     haptic = build_without_scene_warnings(scene)
     F_To_W = haptic.diagram.GetOutputPort("F_To_W")
+    # The force of the hand; that of contact is largest on impact.
+    F_Ho_W = haptic.diagram.GetOutputPort("F_Ho_W_commanded")
     contacts = haptic.diagram.GetOutputPort("contacts")
     pressed: list[tuple[float, float]] = []
 
     def note(root: Context) -> None:
-        firmness = float(np.linalg.norm(F_To_W.Eval(root)[3:]))
-        if firmness == 0.0:
+        if F_To_W.Eval(root)[3:].any():
+            firmness = float(np.linalg.norm(F_Ho_W.Eval(root)[3:]))
+        else:
             firmness = -contacts.Eval(root).least_distance
         pressed.append((firmness, root.get_time()))
 
@@ -175,10 +177,10 @@ def _find_firm_places(scene: Scene) -> list[float]:
 
 
 def stop_hand(scene: Scene, time_s: float) -> Scene:
-    """Returns a scene whose hand goes along its path and stops at a time.
+    """Returns a scene whose hand follows its path and stops at a time.
 
     Args:
-        scene: Scene to change; the device's base stays where it is in it.
+        scene: Scene to change; the device's base does not move.
         time_s: Time of the stop, s, not after the path's end.
 
     Raises:
@@ -205,7 +207,7 @@ def stop_hand(scene: Scene, time_s: float) -> Scene:
         device=replace(
             scene.device,
             base=to_scene_pose(place_base(scene, path)),
-            # The speed of this machine must not change the result.
+            # The result must not depend on the speed of the machine.
             tick_budget_us=None,
         ),
         hand=replace(
@@ -227,7 +229,7 @@ def _settle(
     coupling = haptic.loop.coupling_model
     context = simulator.get_context()
     velocity = haptic.diagram.GetOutputPort("V_WT").Eval(context)
-    # NaN is not below it either.
+    # This is also true for NaN.
     if not np.abs(velocity).max() < _SETTLED_SPEED:
         return None
     try:
@@ -240,7 +242,7 @@ def _settle(
 
 
 def _soften(coupling: CouplingParameters) -> CouplingParameters:
-    """Returns gains lowered to the defaults, or halved if none is above them.
+    """Returns gains lowered to the defaults, or halved if no gain is above them.
 
     The defaults are stable on the shipped device.
     """
@@ -254,13 +256,13 @@ def _soften(coupling: CouplingParameters) -> CouplingParameters:
 def build_without_scene_warnings(
     scene: Scene, device: HapticDevice | DeviceBackend | None = None
 ) -> HapticDiagram:
-    """Builds a scene without warnings: the analysis itself tells what is stable."""
+    """Builds a scene without warnings, since the analysis determines stability."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SceneWarning)
         return BuildHapticDiagram(scene, device=device)
 
 
 def to_scene_pose(X_WF: RigidTransform) -> Pose:
-    """Returns a pose as scenes have it."""
+    """Returns a pose in the form of a scene."""
     rpy_deg = np.rad2deg(RollPitchYaw(X_WF.rotation()).vector())
     return Pose(X_WF.translation().tolist(), rpy_deg.tolist())

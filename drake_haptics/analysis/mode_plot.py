@@ -1,4 +1,4 @@
-"""Poles in the z plane, with the circle of stability and lines of equal damping."""
+"""Plots poles in the z plane, with the unit circle and lines of equal damping."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ _LOOKS: dict[str, dict[str, Any]] = {
 def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     """Draws the eigenvalues of a linear map over a period in the z plane.
 
-    Lines of equal damping ratio spiral from 1 inwards; lines of equal natural
-    frequency cross them. Both are labeled: ζ, and Hz.
+    Lines of equal damping ratio spiral inward from 1; lines of equal natural frequency
+    cross them. Both are labeled: ζ, and Hz.
 
     Args:
         linear: The map from `linearize_sampled` or `calc_monodromy`.

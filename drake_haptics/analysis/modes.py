@@ -1,4 +1,4 @@
-"""A linear map over one period and its modes: how fast, how damped, what moves."""
+"""A linear map over one period, and its modes."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from drake_haptics.report.plain_data import to_plain_data
 class PeriodMap:
     """x⁺ = A x about an equilibrium, x = [x_c; all discrete groups].
 
-    The state is that just before a sampling instant.
+    x is the state just before a sampling instant.
 
     Attributes:
         A: (n, n) matrix of the map.
         period_s: Period of the map, s.
-        state_names: (n,) names, as "plant/tool_x" or "controller/xd[0]".
+        state_names: (n,) names, such as "plant/tool_x" or "controller/xd[0]".
         state: (n,) the equilibrium.
-        quaternions: Positions in the state of the four numbers of each unit
-            quaternion, whose length is no motion.
+        quaternions: Positions in the state of the four numbers of each unit quaternion,
+            whose length is not a motion.
         equilibrium_residual: Largest change of a state over the period, relative to
             its size or 1, whichever is larger.
     """
@@ -51,7 +51,7 @@ class PeriodMap:
         return values[np.argsort(-np.abs(values), kind="stable")]
 
     def spectral_radius(self) -> float:
-        """Returns the largest magnitude of an eigenvalue: stable below 1."""
+        """Returns the largest magnitude of an eigenvalue, which is stable below 1."""
         return float(np.abs(self.eigenvalues()).max())
 
     def to_dict(self) -> dict[str, Any]:
@@ -75,7 +75,8 @@ def check_return(
         tolerance: Bound of the change, relative to the state's size or 1.
 
     Raises:
-        ValueError: A state changes by more; names the one that changes most.
+        ValueError: A state changes by more; the message names the one that changes
+            most.
     """
     relative = np.abs(change) / np.maximum(np.abs(x), 1.0)
     worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
@@ -88,7 +89,7 @@ def check_return(
     return float(relative[worst])
 
 
-# Parts of the states' paths that every haptic loop has, and that tell nothing.
+# Parts of the states' paths that every haptic loop has.
 _KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sample)/")
 # The state of one joint, angle or rate, and one of the tool, pose or velocity.
 _JOINT = re.compile(r"device/simulated_arm/arm/(\w+)_[qw]")
@@ -99,14 +100,14 @@ _TOOL_TURNING = "tool turning"
 def list_parts(states: Iterable[str]) -> list[str]:
     """Returns the names of the parts that move, each once.
 
-    Parts that each haptic loop has are named in words: "elbow joint" for
-    "device/simulated_arm/arm/elbow_joint_w", its rate, and "..._q", its angle; "tool
-    along x" for "haptic_tool/step/x" and "vx", "tool about x" for "wx", axes of the
-    world. The elements of the tool's quaternion have no axis: they are "tool turning",
-    and are left out beside a rate, which has one.
+    Parts of a haptic loop are named in words: "elbow joint" for the rate
+    "device/simulated_arm/arm/elbow_joint_w" and the angle "..._q"; "tool along x" for
+    "haptic_tool/step/x" and "vx", and "tool about x" for "wx", along axes of the world.
+    The elements of the tool's quaternion have no axis; they are "tool turning", which
+    is left out if a rate, which has an axis, is also named.
 
     Args:
-        states: Names of states, those that take the largest part first.
+        states: Names of states, by decreasing participation.
     """
     parts = list(dict.fromkeys(map(_name_part, states)))
     if any(part.startswith("tool about") for part in parts):
@@ -126,24 +127,24 @@ def _name_part(state: str) -> str:
 
 
 def shorten_path(name: str) -> str:
-    """Returns the name of a state without the parts of its path that tell nothing.
+    """Returns the name of a state without the parts of its path that all loops have.
 
     "haptic_tool/step/qw" becomes "haptic_tool/qw".
     """
     return _KNOWN_PARTS.sub("", name)
 
 
-# An eigenvalue this near to 1 moves too slowly to be told from one that stays; the
-# two of a free mass, which are exactly 1, are found to the root of round-off.
+# An eigenvalue this near to 1 cannot be distinguished from 1; the two of a free mass,
+# which are exactly 1, are found to the square root of round-off.
 NEUTRAL = 1e-6
-# A remembered value is gone after as many periods as it is remembered, eigenvalue 0;
-# of a chain of three, 0 is found to the third root of round-off.
+# A remembered value has eigenvalue 0; that of a chain of three is found to the third
+# root of round-off.
 _MEMORY = 1e-3
-# Growth that is no more than this cannot be told from none.
+# Smaller growth cannot be distinguished from none.
 _ROUND_OFF = 1e-9
-# A mode has died out when it has fallen to this.
+# A mode has died out when it has fallen to this share.
 _DIED_OUT = 0.02
-# States with less than this part of the largest participation are not named.
+# States with a smaller share of the largest participation are not named.
 _NAMED = 0.3
 _MOST_NAMED = 3
 
@@ -152,13 +153,13 @@ class ModeKind(enum.Enum):
     """The meaning of an eigenvalue."""
 
     MOTION = "motion"
-    """Grows, or dies out, swinging or not."""
+    """A motion that grows or dies out, oscillating or not."""
     NEUTRAL = "neutral"
-    """Stays where it is put: nothing drives it back, as a free body or friction."""
+    """A displacement that nothing drives back, as of a free body or of friction."""
     MEMORY = "memory"
-    """A held or remembered value, replaced at the next samples."""
+    """A held or remembered value that is replaced at the next samples."""
     QUATERNION_LENGTH = "quaternion length"
-    """No motion at all: the length of a unit quaternion."""
+    """The length of a unit quaternion, which is not a motion."""
 
 
 @dataclass(frozen=True)
@@ -167,9 +168,9 @@ class Mode:
 
     Attributes:
         kind: Meaning of the mode.
-        eigenvalue: λ; of a pair, the one with the positive imaginary part.
+        eigenvalue: λ; that with the positive imaginary part if it is one of a pair.
         period_s: T of the map, s.
-        participation: (name of the state, share) of the states that take part, largest
+        participation: (name of the state, share) of the participating states, largest
             first; the shares of all states add up to 1 (Pérez-Arriaga, Verghese and
             Schweppe 1982: the product of left and right eigenvectors).
     """
@@ -183,7 +184,7 @@ class Mode:
 
     @property
     def growth_per_period(self) -> float:
-        """`|λ| - 1`: above 0 unstable."""
+        """`|λ| - 1`, which is unstable above 0."""
         return abs(self.eigenvalue) - 1.0
 
     @property
@@ -194,7 +195,7 @@ class Mode:
 
     @property
     def damping_ratio(self) -> float:
-        """ζ of s = ln λ / T: 1 for a decay without swing, below 0 if it grows."""
+        """ζ of s = ln λ / T: 1 for a decay without oscillation, below 0 for growth."""
         if self.eigenvalue == 0.0:
             return 1.0
         s = np.log(complex(self.eigenvalue))
@@ -202,7 +203,7 @@ class Mode:
 
     @property
     def decay_time_s(self) -> float:
-        """Time in which the motion falls to 2 %, s; infinite if it does not fall."""
+        """Time in which the motion falls to 2 %, s; infinite if it does not."""
         magnitude = abs(self.eigenvalue)
         if magnitude == 0.0:
             return 0.0
@@ -211,7 +212,7 @@ class Mode:
         return self.period_s * math.log(_DIED_OUT) / math.log(magnitude)
 
     def describe(self) -> str:
-        """Returns one line, as "27.3 Hz, damped 4 % of critical, ...".
+        """Returns one line, such as "27.3 Hz, damped 4 % of critical, ...".
 
         The moving parts of a haptic loop are named in words, "elbow joint" for
         "device/simulated_arm/arm/elbow_joint_q"; `participation` has the names of the
@@ -223,13 +224,13 @@ class Mode:
             return f"no motion: the length of the quaternion {names}"
         mostly = " and ".join(list_parts(largest)[:_MOST_NAMED])
         if self.kind is ModeKind.NEUTRAL:
-            return f"stays where it is put, nothing drives it back; mostly {mostly}"
+            return f"neutral: nothing drives it back; mostly {mostly}"
         if self.kind is ModeKind.MEMORY:
             return f"a held or remembered value, soon replaced; mostly {mostly}"
         return f"{self._describe_motion()}; mostly {mostly}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns all figures and the sentence, ready for JSON."""
+        """Returns all properties and the description, ready for JSON."""
         decay_time_s = self.decay_time_s
         return {
             "kind": self.kind.value,
@@ -255,7 +256,7 @@ class Mode:
         return f"{rate}{damped}, dies out in {self.decay_time_s:.2g} s"
 
     def _list_largest(self) -> list[str]:
-        """Returns the names of the states that take the largest part."""
+        """Returns the names of the states with the largest participation."""
         largest = self.participation[0][1]
         return [name for name, share in self.participation if share >= _NAMED * largest]
 
@@ -268,9 +269,8 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
         linear: The map from `linearize_sampled` or `calc_monodromy`.
 
     Returns:
-        Motions first, the fastest growing or slowest dying before the others; then
-        those that are neutral, memories, and lengths of quaternions. A conjugate pair
-        is one mode.
+        Motions first, by decreasing growth; then neutral modes, memories, and lengths
+        of quaternions. A conjugate pair is one mode.
     """
     require_kinds(
         "linearize_sampled and calc_monodromy make one", linear=(linear, PeriodMap)
@@ -293,9 +293,10 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
 
 
 def describe_motion(mode: Mode) -> str:
-    """Returns how fast a motion swings and what moves, as "245 Hz; mostly ...".
+    """Returns the frequency of a motion and what moves, as in "245 Hz; mostly ...".
 
-    It is for a motion at the limit of stability, which neither grows nor dies out.
+    It is meant for a motion at the limit of stability, which neither grows nor dies
+    out.
     """
     swings = mode.frequency_hz > 0.0
     rate = f"{mode.frequency_hz:.3g} Hz" if swings else "without swing"
@@ -313,7 +314,7 @@ def _make_mode(
     linear: PeriodMap, kind: ModeKind, value: complex, weights: np.ndarray
 ) -> Mode:
     shares = weights / (weights.sum() or 1.0)
-    # A state is named before its rate where both take the same part.
+    # A state precedes its rate if both have the same share.
     order = np.argsort(-np.round(shares, 9), kind="stable")
     participation = tuple(
         (linear.state_names[i], float(shares[i])) for i in order if shares[i] > 1e-6
@@ -326,9 +327,9 @@ def _make_mode(
 def _split_quaternions(linear: PeriodMap) -> tuple[np.ndarray, list[np.ndarray]]:
     """Returns a basis of the possible motions, and quaternions' lengths, (n,) each.
 
-    A map that keeps a quaternion's length has it as a left eigenvector of eigenvalue 1,
-    and what is normal to it goes to itself: the basis leaves it out, so that it cannot
-    mix with true modes at 1.
+    The length is a left eigenvector with eigenvalue 1 of a map that keeps it, and the
+    map takes the subspace normal to it to itself. The basis leaves the length out, so
+    that it cannot mix with true modes at 1.
     """
     n = len(linear.A)
     lengths = []

@@ -1,4 +1,4 @@
-"""The linear map of a diagram with several rates, over the time until all coincide."""
+"""Linearizes a diagram with several rates over their common period."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ from drake_haptics.common.value_checks import check_positive
 
 # Periods are taken for fractions of a second with denominators up to this.
 _LARGEST_DENOMINATOR = 10**7
-# A common period of more than this many of the shortest is an accident of rounding.
+# A longer common period, in shortest periods, is probably an accident of rounding.
 _MOST_PERIODS = 10_000
-# Times that differ by less than this part of a period are the same.
+# Times that differ by less than this part of a period are equal.
 _SAME_TIME = 1e-9
 
 
@@ -100,10 +100,10 @@ def find_hyperperiod(
 
 
 def snap_to_update(time_s: float, timings: Sequence[Timing]) -> float:
-    """Returns the first of the updates that are at a time but for round-off, s.
+    """Returns the first of the updates that are at a time up to round-off, s.
 
-    Drake multiplies period by count, so that 3 · 0.1 s is after 0.3 s: a simulation up
-    to the later of the two would do the update of the earlier one too.
+    Drake multiplies period by count, so that 3 · 0.1 s is after 0.3 s: a simulation
+    until the later of the two would also perform the update at the earlier one.
     """
     near = [time_s]
     for timing in timings:
@@ -114,7 +114,7 @@ def snap_to_update(time_s: float, timings: Sequence[Timing]) -> float:
     return min(near)
 
 
-# Integration steps in the shortest period, if none is asked for.
+# Default number of integration steps in the shortest period.
 _STEPS = 10
 
 
@@ -139,27 +139,27 @@ def calc_monodromy(
     step_s: float | None = None,
     tolerance: float = 1e-8,
 ) -> Monodromy:
-    """Linearizes a system over one hyperperiod, in which all its updates come round.
+    """Linearizes a system over one hyperperiod, a multiple of all its periods.
 
     A simulation in AutoDiffXd with fixed steps of a third-order Runge-Kutta method
-    gives ∂x(t + H)/∂x(t); its eigenvalues are the Floquet multipliers. It is for
-    several rates and offsets, and for discrete plants that sample their output ports;
-    these step before the discrete updates of the same time, and what they remember of
-    the last step counts as a function of the state. For one rate `linearize_sampled` is
-    exact and faster. All events run, publish events too; time goes on from that of the
-    context.
+    gives ∂x(t + H)/∂x(t); its eigenvalues are the Floquet multipliers. Use it for
+    several rates or offsets, and for discrete plants that sample their output ports.
+    Such plants step before the discrete updates of the same time, and their samples of
+    the last step count as functions of the state. For one rate `linearize_sampled` is
+    exact and faster. All events run, including publish events; time continues from that
+    of the context.
 
     Args:
         diagram: Any system that converts to AutoDiffXd.
         context: Its root context, at an equilibrium; only clones are simulated.
-        hyperperiod_s: H, s, a multiple of all periods; if not given the smallest.
-        step_s: Step of the integrator, s; if not given a tenth of the shortest period.
+        hyperperiod_s: H, a multiple of all periods, s. Defaults to the smallest.
+        step_s: Step of the integrator, s. Defaults to a tenth of the shortest period.
         tolerance: Bound of `equilibrium_residual`.
 
     Raises:
-        ValueError: The state does not return; H is not a multiple of all periods, or
-            there is no such multiple and H is not given; a system has abstract state,
-            does not convert, or loses derivatives; Drake refuses otherwise.
+        ValueError: The state does not return; H is not a multiple of all periods, or is
+            not given and there is no such multiple; a system has abstract state, does
+            not convert, or loses derivatives; or Drake refuses the diagram.
     """
     check_system_and_context(diagram, context)
     check_positive(tolerance=tolerance)
@@ -244,7 +244,7 @@ def _is_sampled_plant(leaf: System) -> bool:
 
 
 def _find_sampled_plants(diagram: System) -> list[Timing]:
-    """Returns the timings of plants whose update is not a discrete one for Drake."""
+    """Returns the timings of plants whose update Drake does not count as discrete."""
     return [
         Timing(leaf.time_step(), 0.0, leaf.get_name())
         for leaf in walk_leaves(diagram)

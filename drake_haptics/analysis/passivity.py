@@ -1,17 +1,17 @@
-"""The physical damping that makes a sampled wall passive, frequency by frequency.
+"""Calculates the physical damping that makes a sampled wall passive.
 
 A device with damping matrix D moves in continuous time. Its position is sampled, a
-discrete law -H(z) x gives a force, and the force is held for a period T. Whatever
-passive hand holds the device, the loop cannot be driven into motion if and only if
+discrete law -H(z) x gives a force, and the force is held for a period T. The loop
+cannot be driven into motion by any passive hand if and only if
 
     D - R(ω) is positive semidefinite for 0 < ω <= π/T, with
     R(ω) = T/(2 (1 - cos ωT)) · Herm[(1 - e^(-jωT)) H(e^(jωT))],
 
 Herm[M] = (M + M*)/2. On one axis that is the condition of Colgate and Schenkel (1997),
 b > T/(2 (1 - cos ωT)) Re{(1 - e^(-jωT)) H(e^(jωT))}. For several axes it follows in the
-same way (docs/stability-theory.md): at one baseband ω the motion is any set of aliases
-v_n at ω + 2πn/T, the samples know only their sum s = Σ v_n/(jω_n), and of all motions
-with the same s the device dissipates the least in that with v_n ∝ s/ω_n, namely
+same way (docs/stability-theory.md): at a baseband frequency ω the motion is any set of
+aliases v_n at ω + 2πn/T. The samples determine only their sum s = Σ v_n/(jω_n). Of all
+motions with the same s the device dissipates the least in that with v_n ∝ s/ω_n, namely
 s* D s / Σ 1/ω_n², where Σ 1/ω_n² = T²/(2 (1 - cos ωT)).
 """
 
@@ -56,7 +56,7 @@ class StateSpace(Protocol):
     def D(self) -> Any: ...  # noqa: D102
 
 
-# Poles on the unit circle are calculated to this.
+# Accuracy of poles on the unit circle.
 _ROUND_OFF = 1e-9
 
 # From sampled positions to the force that resists them.
@@ -98,7 +98,7 @@ def as_transfer(
     The poles are those of a linear system; those of a function are not known.
 
     Raises:
-        ValueError: The system is of another period, unstable or not square.
+        ValueError: The system has another period, is unstable or is not square.
     """
     if not all(hasattr(H, name) for name in "ABCD"):
         return _square(H), np.empty(0)  # type: ignore[arg-type]
@@ -131,7 +131,7 @@ def _matrix(system: object, name: str) -> np.ndarray:
 def _square(
     function: Callable[[complex], complex | np.ndarray],
 ) -> Callable[[complex], np.ndarray]:
-    """Returns the function, made to return (m, m), finite, or to raise ValueError."""
+    """Returns a function whose values are (m, m) and finite; it raises ValueError."""
 
     def H(z: complex) -> np.ndarray:
         try:
@@ -151,8 +151,8 @@ def _square(
 
 
 _POINTS = 400
-# The condition is even in ω: this near to 0 it equals its limit there to 1e-8 of
-# itself, and cot(ωT/2) still loses only four digits.
+# The condition is even in ω: this near to 0 it equals its limit to a relative 1e-8, and
+# cot(ωT/2) loses only four digits.
 _LOWEST_ANGLE = 1e-4
 # Points of the grid around a pole's angle, in half widths of its resonance.
 _NEAR_POLES = np.array([-30, -10, -3, -1, -0.5, 0, 0.5, 1, 3, 10, 30])
@@ -166,13 +166,13 @@ class Passivity:
 
     Attributes:
         period_s: T, s.
-        frequencies_Hz: (n,), rising; the last is 1/(2 T).
+        frequencies_Hz: (n,), increasing; the last is 1/(2 T).
         required_matrix: R(ω), (n, m, m), Hermitian, N·s/m (N·m·s/rad).
-        required_damping: Its largest eigenvalue, (n,): the b of a device that damps
-            all m axes alike, D = b I. Meaningless where axes of translation and of
-            rotation are mixed: see `calc_usage`.
+        required_damping: Its largest eigenvalue, (n,): the b of a device that damps all
+            m axes alike, D = b I. It is meaningless if axes of translation and rotation
+            are mixed; see `calc_usage`.
         worst_damping: The largest of `required_damping`: b must be larger.
-        worst_frequency_Hz: Frequency of `worst_damping`; 0 where it is the limit at
+        worst_frequency_Hz: Frequency of `worst_damping`; 0 if it is the limit at
             standstill.
     """
 
@@ -189,8 +189,8 @@ class Passivity:
     def calc_usage(self, damping: np.ndarray) -> np.ndarray:
         """Returns how much of a damping is needed, (n,), without unit.
 
-        That is the largest eigenvalue of L⁻¹ R(ω) L⁻ᵀ with D = L Lᵀ: passive where
-        it is at most one. Axes of different units may be mixed.
+        That is the largest eigenvalue of L⁻¹ R(ω) L⁻ᵀ with D = L Lᵀ: passive if it is
+        at most one. Axes of different units may be mixed.
 
         Args:
             damping: D of device (and hand), symmetric and positive definite, (m, m).
@@ -217,7 +217,7 @@ class Passivity:
 
         Args:
             axes: The axes to draw on. Defaults to new ones.
-            available: Available damping, N·s/m, by name: "device", "device and hand".
+            available: Available damping by name, such as "device", N·s/m.
         """
         axes = find_axes(axes)
         axes.plot(
@@ -236,7 +236,7 @@ class Passivity:
         return axes
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers and lists only; the matrix is left out."""
+        """Returns all fields but the matrix, ready for JSON."""
         return {
             "period_s": self.period_s,
             "frequencies_Hz": self.frequencies_Hz.tolist(),
@@ -261,13 +261,13 @@ def calc_passivity(
             with A, B, C and D, such as pydrake's `LinearSystem`, whose input is x and
             whose output is the force that resists, +H x.
         period_s: T, s.
-        frequencies_Hz: Frequencies, 0 < f <= 1/(2 T); 0 asks for the limit. If not
-            given, a grid over all, dense at a linear system's poles, and refined at its
-            three highest peaks.
+        frequencies_Hz: Frequencies, 0 < f <= 1/(2 T), or 0 for the limit. Defaults to a
+            grid that is dense at the poles of a linear system and refined at its three
+            highest peaks.
 
     Raises:
-        ValueError: The period is not positive or not that of the system, a frequency
-            is out of its range, H is not square, or is not finite somewhere.
+        ValueError: The period is not positive or not that of the system, a frequency is
+            out of range, or H is not square or not finite.
     """
     check_positive(period_s=period_s)
     transfer, poles = as_transfer(H, period_s)
@@ -313,10 +313,10 @@ def _calc_required_matrix(
 
 
 def _make_grid(poles: np.ndarray) -> np.ndarray:
-    """Returns angles in [0, π], close where H may change fast."""
+    """Returns angles in [0, π], which are dense where H may change fast."""
     even = np.linspace(0.0, math.pi, _POINTS)
     slow = np.geomspace(_LOWEST_ANGLE, even[1], _POINTS // 8)
-    # A lightly damped pole rings in a band as wide as it is far from the circle.
+    # A lightly damped pole rings in a band as wide as its distance from the circle.
     width = np.maximum(1.0 - np.abs(poles), 1e-9)
     near = np.abs(np.angle(poles))[:, None] + width[:, None] * _NEAR_POLES
     every = np.concatenate([even, slow, near.ravel()])
@@ -332,8 +332,8 @@ def _refine(angles: np.ndarray, matrix_at: Callable[[float], np.ndarray]) -> np.
     values = np.array([damping_at(angle) for angle in angles])
     inner = values[1:-1]
     peaks = 1 + np.flatnonzero((inner >= values[:-2]) & (inner >= values[2:]))
-    # The offset from the grid's point is searched, not the angle: a search is exact to
-    # half of the digits of its variable.
+    # The search is over the offset from a grid point, because it is exact only to half
+    # of the digits of its variable.
     tops = [
         angles[i]
         + minimize_scalar(

@@ -1,4 +1,4 @@
-"""Axes for plots, of a new figure where none are given."""
+"""Makes axes for plots."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Refuses, with a reason, what an analysis cannot describe.
+"""Refuses, with a reason, systems that an analysis cannot describe.
 
-Preconditions are checked first. A refusal of Drake's own becomes an error that a caller
-can catch and act on: pydrake turns a failed C++ assertion into `SystemExit`, which
-passes every `except Exception` and ends the interpreter; any other failure is a
-`RuntimeError` that tells what failed inside Drake, not what to change.
+Preconditions are checked first. Errors of Drake become errors that a caller can catch
+and act on: pydrake turns a failed C++ assertion into `SystemExit`, which passes every
+`except Exception` and ends the interpreter; any other failure is a `RuntimeError` that
+says what failed inside Drake, not what to change.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from drake_haptics.common.value_checks import check_positive
 
 
 def check_system_and_context(diagram: System, context: Context) -> None:
-    """Raises unless they are a system and a context of it.
+    """Raises an error unless the arguments are a system and one of its contexts.
 
     Raises:
-        TypeError: One of them is of another kind.
-        RuntimeError: The context is of another system.
+        TypeError: An argument has the wrong type.
+        RuntimeError: The context belongs to another system.
     """
     require_kinds(
         "BuildHapticDiagram returns one in .diagram", diagram=(diagram, System)
@@ -67,9 +67,9 @@ def check_abstract_state(system: System) -> None:
 
 
 def check_conversion(system: System) -> None:
-    """Raises ValueError if a system has no AutoDiffXd twin, and names it.
+    """Raises a ValueError that names a system without an AutoDiffXd twin.
 
-    A system that can have none says in its `no_derivatives` why, and what to do.
+    The attribute `no_derivatives` of such a system says why, and what to do.
     """
     found = [
         leaf
@@ -100,11 +100,11 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
 
     Args:
         timings: The timings that `find_timings` found.
-        period_s: The period, s, needed for a system without periodic updates.
+        period_s: The period, s; only needed for a system without periodic updates.
 
     Raises:
-        ValueError: There are several periods, an offset, none and `period_s` is not
-            given, or `period_s` is another one or not positive.
+        ValueError: There are several periods or an offset; there is no period and
+            `period_s` is not given; or `period_s` differs or is not positive.
     """
     if period_s is not None:
         check_positive(period_s=period_s)
@@ -139,20 +139,20 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
 def check_events(system: System, context: Context, period_s: float) -> None:
     """Raises ValueError for per-step updates and unrestricted updates.
 
-    pydrake does not list a system's events, so a clone is simulated from time 0, when
-    every periodic event without an offset is due, for two parts of a period, in which
-    no event is due; Drake's own counters tell what ran. Publish events run too. An
-    unrestricted update that has an offset of more than that is not seen.
+    pydrake does not list a system's events. So a clone is simulated from time 0, when
+    every periodic event without an offset is due, in two steps within a period, in
+    which none is due; Drake counts what ran. Publish events run, too. An unrestricted
+    update with a larger offset is not found.
 
     Args:
-        system: A system whose periodic discrete updates have one period, no offset.
+        system: A system whose periodic discrete updates have one period and no offset.
         context: Its root context; only a clone is simulated.
         period_s: The period, s.
     """
     clone = context.Clone()
     clone.SetTime(0.0)
     simulator = Simulator(system, clone)
-    # The state's motion does not matter here, so the cheapest integrator will do.
+    # The motion does not matter here, so the cheapest integrator will do.
     ResetIntegratorFromFlags(simulator, "explicit_euler", period_s)
     simulator.Initialize(InitializeParams(suppress_initialization_events=True))
     simulator.AdvancePendingEvents()
@@ -174,7 +174,7 @@ def check_events(system: System, context: Context, period_s: float) -> None:
 
 
 def _say_suspects(system: System) -> str:
-    # Drake's own do nothing of the kind.
+    # Systems of Drake have no such events.
     names = [
         calc_path(system, leaf)
         for leaf in walk_leaves(system)
@@ -192,7 +192,7 @@ def _list_timings(timings: Sequence[Timing]) -> str:
     )
 
 
-# What Drake says (1.51 to 1.58), and what it means for somebody who analyzes a diagram.
+# Texts of Drake's errors (1.51 to 1.58), and what they mean for an analysis.
 _REASONS = (
     (
         "has_only_continuous_state",
@@ -257,16 +257,17 @@ _ASSERTION = re.compile(r"(Failure|abort\w*): |Failure at ")
 
 @contextmanager
 def explain_drake_errors(doing: str) -> Iterator[None]:
-    """Raises a `ValueError` with the reason where Drake would end the program.
+    """Raises a `ValueError` with the reason if Drake would end the program.
 
     It is also a decorator. A `SystemExit` that is not Drake's passes, as does a
-    `RuntimeError` whose text is not known here: it is the user's own.
+    `RuntimeError` whose text is unknown, since it is probably the user's.
 
     Args:
-        doing: Name of the failed work, for the message, as "linearizing the diagram".
+        doing: Description of the work for the message, such as "linearizing the
+            diagram".
 
     Raises:
-        ValueError: Drake refused; names what to change, then quotes Drake.
+        ValueError: Drake failed; the message says what to change, then quotes Drake.
     """
     try:
         yield

@@ -1,6 +1,6 @@
-"""The exact linear map of a sampled system over one period.
+"""Linearizes a sampled system exactly over one period.
 
-Drake's `Linearize` takes a system that is all continuous or one discrete group. A
+Drake's `Linearize` takes a system that is all continuous or has one discrete group. A
 haptic loop is neither: a device moves continuously, and its controller samples it.
 """
 
@@ -56,8 +56,8 @@ class SampledLinearization(PeriodMap):
         rates: (n, n) rates of the motion after it, zero in the rows of x_d:
             A = exp(T rates) update.
         kinks: Names of the states and outputs whose slope differs between the two sides
-            of the equilibrium, as where a contact just opens or rests without speed;
-            their derivative is the one that AutoDiffXd takes.
+            of the equilibrium, as at a contact that just opens or rests without speed;
+            their derivative is that of AutoDiffXd.
     """
 
     B: np.ndarray
@@ -85,14 +85,14 @@ def linearize_sampled(
     output_port: int | str | None = None,
     tolerance: float = 1e-8,
 ) -> SampledLinearization:
-    """Linearizes a system over one period, its discrete and continuous parts together.
+    """Linearizes a system with discrete and continuous parts over one period.
 
     In Drake's order: all discrete groups are updated at t from the state before it,
     x_d⁺ = f_d(x_c, x_d, u); then ẋ_c = f_c(x_c, x_d⁺, u) flows over T with x_d⁺ and u
     held, exactly, by the matrix exponential (zero-order hold: Franklin, Powell and
     Workman, Digital Control of Dynamic Systems, section 4.3.3). Time and all other
-    inputs stay what they are in the context. Derivatives are AutoDiffXd's, compared
-    with differences of doubles.
+    inputs keep their values in the context. Derivatives are AutoDiffXd's, and are
+    compared with differences of doubles.
 
     Only a clone of the context is evaluated. To find events that Drake would ignore,
     the clone is simulated for part of a period: publish events run there.
@@ -100,16 +100,17 @@ def linearize_sampled(
     Args:
         diagram: Any system that converts to AutoDiffXd: discrete, continuous or both.
         context: Its root context, at an equilibrium.
-        period_s: T, s; needed only if nothing is updated periodically.
-        input_port: Index or name of the vector input u, or none.
-        output_port: Index or name of the vector output y, or none.
+        period_s: T, s; only needed if nothing is updated periodically.
+        input_port: Index or name of the vector input u; None for no input.
+        output_port: Index or name of the vector output y; None for no output.
         tolerance: Bound of `equilibrium_residual`.
 
     Raises:
-        ValueError: The state is no equilibrium (see `find_equilibrium`); there are
-            several periods (see `calc_monodromy`), offsets, abstract states,
+        ValueError: The state is not an equilibrium (see `find_equilibrium`); there are
+            several periods (see `calc_monodromy`), offsets, abstract states, or
             unrestricted or per-step updates; a system does not convert, or loses
-            derivatives; a port is not there, abstract or open; Drake refuses otherwise.
+            derivatives; a port does not exist, is abstract or is open; or Drake refuses
+            the diagram.
     """
     check_system_and_context(diagram, context)
     if not 0.0 < tolerance < 1.0:
@@ -165,10 +166,10 @@ def linearize_sampled(
 def _check_nearby(
     one_period: SampledMap, names: tuple[str, ...], outputs: list[str]
 ) -> None:
-    """Compares derivatives with differences a little beside the state.
+    """Compares derivatives with differences near the state.
 
-    A derivative that is lost is lost on both sides. A limit that is just reached, as
-    that of a device's torque, may happen to be at one of the two points.
+    A lost derivative is lost on both sides, but a limit, such as that of a device's
+    torque, may happen to be at one of the two points.
     """
     try:
         _check_beside(one_period, names, outputs, 1.0)
@@ -217,7 +218,7 @@ def _extend(jacobian: SampledValues, n_c: int, n: int) -> tuple[np.ndarray, np.n
 def _find_input(
     system: System, context: Context, chosen: int | str | None
 ) -> InputPort | None:
-    """Returns the vector input port of an index or a name."""
+    """Returns the vector input port with an index or a name."""
     ports = [system.get_input_port(i) for i in range(system.num_input_ports())]
     port = _find_port("input_port", ports, chosen)
     if port is not None and not port.HasValue(context):
@@ -229,13 +230,13 @@ def _find_input(
 
 
 def _find_output(system: System, chosen: int | str | None) -> OutputPort | None:
-    """Returns the vector output port of an index or a name."""
+    """Returns the vector output port with an index or a name."""
     ports = [system.get_output_port(i) for i in range(system.num_output_ports())]
     return _find_port("output_port", ports, chosen)
 
 
 def _find_port(kind: str, ports: list[_Port], chosen: int | str | None) -> _Port | None:
-    """Returns the vector port of an index or a name."""
+    """Returns the vector port with an index or a name."""
     if chosen is None:
         return None
     names = [port.get_name() for port in ports]

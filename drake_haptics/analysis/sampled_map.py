@@ -1,4 +1,4 @@
-"""One period of a sampled system: the update of its memory, then its motion."""
+"""Evaluates one period of a sampled system: its discrete update, then its motion."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from drake_haptics.common.one_line import one_line
 
 @dataclass(frozen=True)
 class SampledValues:
-    """The values that one period makes of a state, or their derivatives.
+    """The results of one period of a sampled system, or their derivatives.
 
     Attributes:
         update: (n_d,) x_d⁺, the discrete groups after the update at t from x(t⁻); or
@@ -72,15 +72,15 @@ class SampledMap:
         """Reads state and input.
 
         Args:
-            system: Any system; its AutoDiffXd twin is made when it is first asked for.
+            system: Any system; its AutoDiffXd twin is made on first use.
             context: Its root context; only a clone is used.
             timings: The timings that `find_timings` found.
             input_port: A vector port of the system, which has a value.
             output_port: A vector port of the system.
 
         Raises:
-            ValueError: A system inside has several timings, which pydrake cannot
-                evaluate singly.
+            ValueError: A system has several timings, which pydrake cannot evaluate one
+                at a time.
         """
         names = [timing.system for timing in timings]
         several = sorted({name for name in names if names.count(name) > 1})
@@ -104,7 +104,7 @@ class SampledMap:
             self.u = np.array(input_port.Eval(self.context))
 
     def hold(self, x: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Returns [x_c; x_d⁺] (n,), which the motion starts from."""
+        """Returns [x_c; x_d⁺] (n,), from which the motion starts."""
         return self._step(self._system, self.context, x, u)
 
     def calc(self, x: np.ndarray, held: np.ndarray, u: np.ndarray) -> SampledValues:
@@ -120,10 +120,10 @@ class SampledMap:
     def differentiate(
         self, x: np.ndarray, held: np.ndarray, u: np.ndarray
     ) -> SampledValues:
-        """Returns the derivatives of the three functions, arguments as for `calc`.
+        """Returns the derivatives of the three functions, with the arguments of `calc`.
 
-        A row without derivatives is zero: `check_derivatives` tells whether it should
-        be.
+        A row without derivatives is zero; `check_derivatives` finds out whether it
+        should be.
 
         Raises:
             RuntimeError: A system has no AutoDiffXd twin, or cannot be evaluated.
@@ -150,7 +150,7 @@ class SampledMap:
         held: np.ndarray,
         u: np.ndarray,
     ) -> SampledValues:
-        """Returns the values, in the scalar of the system."""
+        """Returns the values in the scalar type of the system."""
         update = self._step(system, context, x, u)[self.num_continuous :]
         output = np.zeros(0)
         if self._output is not None:

@@ -1,10 +1,10 @@
-"""A sampled wall on a handle that moves in continuous time: one axis, exactly.
+"""Calculates exactly the stability of a sampled wall on a handle with one axis.
 
 The handle has mass m and damper b, and a hand may hold it by mass m_h, damper b_h and
 spring k_h. Every period T the wall's force -(K x + B v) is calculated from the sampled
 position, shown t_d later and then held. Between the changes of the force the flow is
-linear, so one period is a matrix and stability its spectral radius: what the six-axis
-linearization of a Drake diagram must agree with where its motion is one axis.
+linear, so one period is a matrix, and stability its spectral radius. The six-axis
+linearization of a Drake diagram must agree with it for motions along one axis.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ import numpy as np
 from scipy.linalg import expm
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.common.value_checks import check_at_least, check_positive
 
-# Stiffnesses are tried this factor apart before the edge is bisected.
+# Ratio of the stiffnesses that are tried before the edge is bisected.
 _STEP = 2.0 ** (1.0 / 8.0)
-# Softest wall that is tried, as K T²/m: softer ones are not told from the free handle.
+# Softest wall that is tried, as K T²/m; softer ones are like a free handle.
 _SOFTEST_ALPHA = 1e-6
 _RELATIVE_TOLERANCE = 1e-10
-# Delays are told apart to this part of a period: less is round-off of t_d/T.
+# Delays that differ by less than this part of a period are equal.
 _DELAY_TOLERANCE = 1e-9
 
 
@@ -40,13 +41,12 @@ class SampledWall:
         period_s: T, s.
         stiffness: K of the wall, N/m.
         wall_damping: B of the wall, N·s/m.
-        delay_s: t_d, delay of the force on top of the hold, s; any, not only whole
-            periods.
+        delay_s: t_d, delay of the force on top of the hold, s; not only whole periods.
         hand_mass: m_h, kg; it moves with the handle.
         hand_damping: b_h, N·s/m.
         hand_stiffness: k_h, N/m.
-        true_velocity: The wall's damper sees the handle's velocity itself, instead of
-            the backward difference of its positions.
+        true_velocity: Whether the wall's damper sees the handle's velocity itself,
+            instead of the backward difference of its positions.
     """
 
     mass: float
@@ -64,31 +64,26 @@ class SampledWall:
         """Checks the values.
 
         Raises:
-            ValueError: The mass or the period is not positive, or anything else
-                is negative or no number.
+            ValueError: The mass or the period is not positive, or another value is
+                negative or not a number.
         """
-        for name in ("mass", "period_s"):
-            value = getattr(self, name)
-            if not (value > 0.0 and math.isfinite(value)):
-                raise ValueError(f"{name} must be positive, is {value}")
-        for name in (
-            "damping",
-            "stiffness",
-            "wall_damping",
-            "delay_s",
-            "hand_mass",
-            "hand_damping",
-            "hand_stiffness",
-        ):
-            value = getattr(self, name)
-            if not (value >= 0.0 and math.isfinite(value)):
-                raise ValueError(f"{name} must be at least 0, is {value}")
+        check_positive(mass=self.mass, period_s=self.period_s)
+        check_at_least(
+            0,
+            damping=self.damping,
+            stiffness=self.stiffness,
+            wall_damping=self.wall_damping,
+            delay_s=self.delay_s,
+            hand_mass=self.hand_mass,
+            hand_damping=self.hand_damping,
+            hand_stiffness=self.hand_stiffness,
+        )
 
     def make_step_matrix(self) -> np.ndarray:
         """Returns A of z[k+1] = A z[k], just before each sample.
 
-        The state is x, v, the x of the sample before, and the forces that are still
-        to be shown or just shown, the newest first.
+        The state is x, v, the x of the previous sample, and the forces that are still
+        to be shown or just shown, newest first.
         """
         T = self.period_s
         whole = math.floor(self.delay_s / T + _DELAY_TOLERANCE)
@@ -102,7 +97,7 @@ class SampledWall:
         force[0] = -self.stiffness - difference
         force[1] = -self.wall_damping if self.true_velocity else 0.0
         force[2] = difference
-        # Row k is the force that is shown k periods after it was calculated.
+        # Row k is the force that is shown k periods after its calculation.
         shown = np.vstack([force, np.eye(size)[3:]])
 
         A = np.zeros((size, size))
@@ -120,7 +115,7 @@ class SampledWall:
         return A
 
     def calc_spectral_radius(self) -> float:
-        """Returns the growth per period of the slowest mode to die; stable below 1."""
+        """Returns the largest growth per period of a mode, which is stable below 1."""
         return float(np.abs(np.linalg.eigvals(self.make_step_matrix())).max())
 
     def _calc_flow(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
@@ -133,7 +128,7 @@ class SampledWall:
         )
 
 
-# A search changes the wall again and again, but not what it acts on.
+# A search changes the wall many times, but not what it acts on.
 @lru_cache(maxsize=64)
 def _calc_flow(
     m: float, b: float, k: float, time_s: float
@@ -146,18 +141,18 @@ def _calc_flow(
 
 @on_one_blas_thread
 def calc_largest_stiffness(wall: SampledWall) -> float:
-    """Returns the stiffness K up to which every softer wall is stable too.
+    """Returns the stiffness K below which every wall is stable.
 
-    Tries stiffer walls, a factor of 1.09 apart, until one grows, and bisects that step
-    to 1e-10 of K. A wall that is stable again beyond an unstable one does not count
-    (tests over random walls found none). The stiffness of `wall` is not used. Zero
-    if even the softest is unstable, as with too much damping of the wall.
+    It tries stiffer walls, a factor of 1.09 apart, until one is unstable, and bisects
+    that step to 1e-10 of K. A stable wall beyond an unstable one would be missed (tests
+    over random walls found no such case). The result is zero if even the softest is
+    unstable, as with too much damping of the wall.
 
     Args:
         wall: The wall, whose stiffness is not used.
     """
-    # Ends: held for a period, a stiff enough spring throws the handle back farther
-    # than it was.
+    # The search ends, because a stiff enough spring that is held for a period throws
+    # the handle back farther than it was.
     return _find_edge(
         lambda stiffness: replace(wall, stiffness=stiffness),
         start=_SOFTEST_ALPHA * (wall.mass + wall.hand_mass) / wall.period_s**2,
@@ -169,11 +164,11 @@ def calc_largest_stiffness(wall: SampledWall) -> float:
 def calc_gain_margin(wall: SampledWall) -> float:
     """Returns the factor on both K and B up to which the wall is stable.
 
-    Searched as `calc_largest_stiffness` does, from factors far below one. Infinite if
-    both are zero.
+    It is searched for as in `calc_largest_stiffness`, from factors far below one, and
+    is infinite if both gains are zero.
 
     Args:
-        wall: The wall at its own gains; the margin is above 1 if it is stable.
+        wall: The wall; the margin is above 1 if it is stable.
     """
     K, B, T = wall.stiffness, wall.wall_damping, wall.period_s
     if K == B == 0.0:
@@ -188,12 +183,12 @@ def calc_gain_margin(wall: SampledWall) -> float:
 
 @on_one_blas_thread
 def calc_largest_delay(wall: SampledWall) -> float:
-    """Returns the delay t_d up to which every shorter one is stable too, s.
+    """Returns the delay t_d below which every delay is stable, s.
 
-    Tries longer delays, a quarter of a period or 2 % apart, until one grows, and
-    bisects that step to 1e-10 of it. The delay of `wall` is not used. Zero if the
-    wall is unstable without delay; infinite if its loop gain is below one at every
-    frequency, as of a soft wall in a firm hand.
+    It tries longer delays, a quarter of a period or 2 % apart, until one is unstable,
+    and bisects that step to a relative 1e-10. The result is zero if the wall is
+    unstable without delay, and infinite if its loop gain is below one at every
+    frequency, as for a soft wall in a firm hand.
 
     Args:
         wall: The wall, whose delay is not used.
@@ -212,7 +207,7 @@ def _find_edge(
     start: float,
     step: Callable[[float], float],
 ) -> float:
-    """Returns the value from which walls are unstable; 0 if they are at the start."""
+    """Returns the value from which walls are unstable; 0 if the first one is."""
 
     def is_stable(value: float) -> bool:
         return make_wall(value).calc_spectral_radius() < 1.0

@@ -1,4 +1,4 @@
-"""Analyzes a scene's stability where its tool is held in contact."""
+"""Analyzes a scene's stability with its tool held in contact."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, float], None]
 
-# The map reaches from this share of a gain's largest value to that value.
+# The smallest stiffness of the map, as a share of the largest.
 _LOWEST_SHARE = 0.02
-# The map goes beyond the largest limit, and the scene's own gain, by this factor.
+# The largest stiffness of the map, as a multiple of the largest limit and gain.
 _BEYOND = 1.5
 
 
@@ -55,21 +55,20 @@ class SceneStability:
     Attributes:
         scene: The scene, its hand stopped.
         time_s: Time at which the hand stopped on its path, s.
-        handle: Inertia and damping of device and hand where they are.
+        handle: Inertia and damping of device and hand at that place.
         num_contacts: Number of contacts that push at rest.
         contact_force_N: Contact force on the tool, at rest, N.
-        growth: Growth of the fastest growing motion in a tick; stable below 1.
+        growth: Growth of the fastest growing motion per tick; stable below 1.
         linearization: Linear map of one tick.
         modes: All motions, fastest growing first.
-        delay_margin_s: Further delay at which the loop becomes unstable, s.
+        delay_margin_s: Additional delay at which the loop becomes unstable, s.
         limits: Limits of the coupling's stiffness in translation and in rotation, in
-            this contact and against a rigid wall; without those that the coupling does
-            not have.
+            this contact and against a rigid wall; stiffnesses of zero are left out.
         felt: Damping that makes the felt impedance passive, over frequency.
-        damping_usage: Share of the damping of device and hand that this takes, at each
-            frequency of `felt`: passive where it is at most 1.
-        broken_bounds: Sentences of `check_coupling`.
-        map: Growth over stiffness and damping of translation; None if not asked for.
+        damping_usage: Share of the damping of device and hand that this requires, at
+            each frequency of `felt`; passive if it is at most 1.
+        broken_bounds: Sentences of `check_scene_coupling`.
+        map: Growth over stiffness and damping of translation; None without a map.
         restless_s: Times of firmer contacts, s, at which the tool did not come to rest.
     """
 
@@ -98,12 +97,12 @@ class SceneStability:
 
     @property
     def is_stable(self) -> bool:
-        """Tells whether every motion dies out."""
+        """Whether every motion dies out."""
         return self.growth < 1.0
 
     @property
     def is_passive(self) -> bool:
-        """Tells whether no hand, however it holds, can be driven into motion."""
+        """Whether the loop cannot drive any passive hand into motion."""
         return bool(self.damping_usage.max() <= 1.0)
 
     def plot(self) -> Figure:
@@ -123,7 +122,7 @@ class SceneStability:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns all of it, ready for JSON."""
+        """Returns all results, ready for JSON."""
         return to_plain_data(
             {
                 "description": self.scene.description,
@@ -160,23 +159,24 @@ def analyze_scene(
     store: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> SceneStability:
-    """Analyzes the stability of a scene where its tool is held in contact.
+    """Analyzes the stability of a scene with its tool held in contact.
 
     Args:
         scene: A scene with a simulated device and hand.
-        time_s: Time at which the hand stops on its path, s; the firmest contact if not
-            given.
+        time_s: Time at which the hand stops on its path, s. Defaults to the firmest
+            contact.
         map_size: Number of stiffnesses and of dampings of the map, at least 2; 0 for no
             map.
         executor: Executor that computes the map, see `run_study`.
         store: Store of the map's results, see `run_study`.
-        progress: Called with the current work and its share that is done, in [0, 1].
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
 
     Raises:
         ValueError: The tool does not come to rest, or there is no equilibrium, or
             `map_size` is 1 or negative.
-        SceneError: The scene cannot be built.
-        drake_haptics.simulation.run.RunError: It diverges before the tool touches.
+        SceneError: The scene cannot be built. drake_haptics.simulation.run.RunError:
+        The scene diverges before the tool touches.
     """
     if map_size < 0 or map_size == 1:
         raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")
@@ -194,7 +194,7 @@ def analyze_scene(
     if map_size > 0:
         what = f"map of {map_size**2} points"
         if executor is None:
-            # On all cores, each of which holds the scene first.
+            # Each process on a core holds the scene first.
             map_s = held_s - began_s + map_size**2 * point_s / (os.cpu_count() or 1)
             what += f", about {map_s:.0f} s"
         map_ = calc_z_width(
@@ -266,7 +266,7 @@ def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     parts, root = loop.haptic.loop, loop.context
     diagram = loop.haptic.diagram
     contacts = diagram.GetOutputPort("contacts").Eval(root)
-    # The force begins at the tolerance; by constraints all that are shown push.
+    # The force begins at the tolerance; under the constraint law all contacts push.
     tolerance_m = math.inf
     if parts.penalty is not None:
         clustering = parts.penalty.contact_clustering

@@ -1,4 +1,4 @@
-"""The growth of a disturbance of a loop, and the limit where the loop is unstable."""
+"""Calculates the growth of disturbances of a loop, and finds limits of stability."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class StabilityLimit:
     """The largest value at which a loop is stable.
 
     Attributes:
-        value: The largest stable value; infinite where no value up to `highest` is
-            unstable, 0 where none down to `lowest` is stable.
+        value: The largest stable value; infinite if no value up to `highest` is
+            unstable, 0 if none down to `lowest` is stable.
         lowest: Lower end of the range that was searched.
         highest: Upper end of that range.
         evaluations: Number of values that were tried.
-        is_crossing: Whether growth passes 1 at the value; False where the growth beyond
-            is not known, or there is no limit.
+        is_crossing: Whether growth passes 1 at the value; False if the growth beyond it
+            is unknown, or if there is no limit.
     """
 
     value: float
@@ -37,7 +37,7 @@ class StabilityLimit:
 
 
 def calc_growth(eigenvalues: np.ndarray) -> float:
-    """Returns by how much the fastest growing motion is multiplied in a period.
+    """Returns the factor by which the fastest growing motion grows per period.
 
     Args:
         eigenvalues: (n,) eigenvalues of one period. Those at 1, to 1e-6, are neutral
@@ -49,8 +49,8 @@ def calc_growth(eigenvalues: np.ndarray) -> float:
 def drop_neutral(eigenvalues: np.ndarray) -> np.ndarray:
     """Returns eigenvalues (n,) with 0 instead of those at 1, to 1e-6.
 
-    Those belong to states without a place of their own: the adhesion points of
-    friction, a balance of energy, the sign of a quaternion.
+    Those belong to states that nothing drives back: adhesion points of friction, a
+    balance of energy, the length of a quaternion.
     """
     return np.where(np.abs(eigenvalues - 1.0) > NEUTRAL, eigenvalues, 0.0)
 
@@ -63,14 +63,14 @@ def find_stability_limit(
     highest: float,
     relative_tolerance: float = 1e-4,
 ) -> StabilityLimit:
-    """Finds the smallest value above the stable ones at which motions grow.
+    """Finds the smallest value at which motions grow.
 
-    Steps by a factor of two from `start` until the growth passes 1, then closes in.
-    A loop that becomes stable again within a factor of two is not seen.
+    It steps by a factor of two from `start` until the growth passes 1, then finds the
+    root. A loop that becomes stable again within a factor of two is missed.
 
     Args:
         growth: Function of a value that returns the growth per period, as `calc_growth`
-            does; NaN where it is not known, which counts as unstable.
+            does; NaN if it is unknown, which counts as unstable.
         start: First value to try, in the range.
         lowest: Lower end of the range, above 0.
         highest: Upper end of the range, at least `lowest`.
@@ -108,7 +108,7 @@ def find_stability_limit(
             if unstable == math.log(lowest):
                 return answer(0.0)
             stable = max(unstable - math.log(2.0), math.log(lowest))
-    # Where a value cannot be evaluated, halving is all that is left.
+    # If a value cannot be evaluated, only bisection is possible.
     while math.isinf(excess(unstable)) and unstable - stable > relative_tolerance:
         middle = (stable + unstable) / 2.0
         if excess(middle) < 0.0:
@@ -121,10 +121,11 @@ def find_stability_limit(
     return answer(math.exp(root), is_crossing=True)
 
 
-# So small that only the linear part of the motion is seen, and so large that round-off
-# is not: relative to states of meters, radians and newtons.
-_DISTURBANCE = 1e-7
-# A mode is followed until it is so many times larger or smaller than it began.
+# Relative to states of meters, radians and newtons: small enough for linear motion, and
+# larger than the nanometers of motion that the constraint law leaves in a flush
+# contact.
+_DISTURBANCE = 1e-6
+# A mode is followed until it has changed by this factor.
 _FOLLOWED = 1e4
 _FEWEST_PERIODS = 20
 
@@ -137,14 +138,14 @@ def measure_growth(
     *,
     periods: int = 300,
 ) -> float:
-    """Returns by how much a mode is multiplied in a period, in simulation.
+    """Returns the factor by which a mode grows per period in simulation.
 
-    Two runs start beside each other, one at the state of the context, one disturbed
-    along the mode. What both do alike, as drifting, cancels in their difference, and
-    the left eigenvector takes the mode out of it.
+    Two runs start at the state of the context, one of them disturbed along the mode.
+    Common motion, such as drift, cancels in their difference, from which the left
+    eigenvector extracts the mode.
 
     Args:
-        make_simulator: Returns a simulator that starts at the context it is given.
+        make_simulator: Function that returns a simulator that starts at a context.
         context: Root context, at an equilibrium.
         eigenvectors: Right and left eigenvector of the mode, (n,) each, over [x_c; all
             discrete groups], of any length.
@@ -152,8 +153,8 @@ def measure_growth(
         periods: Largest number of periods to simulate.
 
     Raises:
-        ValueError: The disturbance is gone, or has left the linear part of the motion,
-            after a few periods.
+        ValueError: After a few periods the disturbance has vanished or is no longer
+            linear.
     """
     right, left = eigenvectors
     disturbance = np.real(right / np.abs(right).max()) * _DISTURBANCE
@@ -168,11 +169,11 @@ def measure_growth(
             run.AdvanceTo(start_s + k * period_s)
         at_rest, disturbed = (get_state(run.get_context()) for run in runs)
         amplitude = abs(np.vdot(left, disturbed - at_rest))
-        # Below is round-off, above what is not linear; NaN is neither.
+        # Smaller is round-off, larger is not linear; NaN fails, too.
         if not 1.0 / _FOLLOWED < amplitude / math.exp(logarithms[0]) < _FOLLOWED:
             break
         logarithms.append(math.log(amplitude))
-    # The first few may hold other motions that the disturbance has set off.
+    # The first few may contain other motions that the disturbance has excited.
     followed = logarithms[len(logarithms) // 10 :]
     if len(followed) < _FEWEST_PERIODS:
         raise ValueError(

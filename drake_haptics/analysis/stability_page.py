@@ -1,4 +1,4 @@
-"""Writes a scene's stability as one page that any browser shows."""
+"""Writes a scene's stability as an HTML page."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _Table = tuple[list[str], list[list[str]]]
 
 
 def write_stability_page(stability: SceneStability, name: str, path: Path) -> None:
-    """Writes the page as one HTML file, and its picture beside it as PNG.
+    """Writes the page as one HTML file, and its picture as a PNG file next to it.
 
     Raises:
         ValueError: The path has the picture's suffix.
@@ -45,7 +45,7 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
 
 
 def describe_verdict(stability: SceneStability) -> str:
-    """Says in a sentence or two whether the scene is stable and passive."""
+    """Returns a sentence or two that say whether the scene is stable and passive."""
     if not stability.is_stable:
         return (
             f"Unstable: a disturbance grows by {_percent(stability.growth - 1.0)} in"
@@ -63,7 +63,7 @@ def describe_verdict(stability: SceneStability) -> str:
 
 
 def _describe_nearest_limit(limits: tuple[StiffnessLimits, ...]) -> str:
-    """Says that the scene is stable, with the nearest limit if there is one."""
+    """Returns that the scene is stable, with the nearest limit if there is one."""
     nearest = min(limits, key=lambda limit: limit.gain_margin, default=None)
     if nearest is None or math.isinf(nearest.gain_margin):
         return "Stable."
@@ -81,7 +81,7 @@ def _describe_nearest_limit(limits: tuple[StiffnessLimits, ...]) -> str:
 
 
 def describe_situation(stability: SceneStability) -> str:
-    """Says what was analyzed."""
+    """Returns a sentence that says what was analyzed."""
     scene, handle = stability.scene, stability.handle
     grip = scene.hand.grip
     held = "without a hand" if grip == "none" else f"in a {grip} grip"
@@ -102,8 +102,8 @@ def describe_situation(stability: SceneStability) -> str:
 
 
 def describe_restless(stability: SceneStability) -> str:
-    """Says where the tool is pressed more and does not rest; nothing if nowhere."""
-    # An unstable coupling rests nowhere, which is said elsewhere.
+    """Returns where the tool is pressed harder but does not rest; empty if nowhere."""
+    # With an unstable coupling the tool rests nowhere, as the verdict says.
     if not stability.restless_s or not stability.is_stable:
         return ""
     *others, last = (f"{time_s:.2f}" for time_s in sorted(stability.restless_s))
@@ -116,7 +116,7 @@ def describe_restless(stability: SceneStability) -> str:
 
 
 def describe_delay(stability: SceneStability) -> str:
-    """Says how much later the device's force may come."""
+    """Returns how much later the device's force may come."""
     delay_s = stability.delay_margin_s
     if math.isfinite(delay_s):
         return f"{1e3 * delay_s:.3g} ms"

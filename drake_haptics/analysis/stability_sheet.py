@@ -1,4 +1,4 @@
-"""Draws a scene's stability: map, poles, passivity and limits on one sheet."""
+"""Draws a scene's stability on one sheet: map, poles, passivity and limits."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ def draw_sheet(
     bounds: HeldBounds,
     gains: tuple[float, float],
 ) -> Figure:
-    """Draws the sheet on a new figure, which no window shows.
+    """Draws the sheet on a new figure, without a window.
 
     Args:
         title: Title above all panels.
         linearization: Linear map of one tick.
         limits: Limits of the coupling's stiffness.
-        frequencies_Hz: (n,) frequencies, rising, Hz.
+        frequencies_Hz: (n,) frequencies, increasing, Hz.
         damping_usage: (n,) share of the damping that passivity needs at each frequency.
-        map: Growth over stiffness and damping; without it its panel is left out.
+        map: Growth over stiffness and damping; None leaves its panel out.
         bounds: Theoretical bounds of the device in its hand, for the map.
         gains: K, N/m, and B, N·s/m, of the scene, for the map.
     """
@@ -123,7 +123,7 @@ def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
     )
     axes.invert_yaxis()
     axes.set_xscale("log")
-    # The labels beyond the bars take as much as three bars of ten.
+    # Leaves space for the labels beyond the bars.
     axes.set_xlim(_LEAST_SHOWN, longest * (longest / _LEAST_SHOWN) ** 0.4)
     axes.set_xlabel("stiffness of the coupling, times the scene's")
     axes.set_title("largest stable stiffness")
@@ -131,7 +131,7 @@ def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
 
 
 def _put_legend_below(axes: Axes) -> None:
-    """Puts it where no data are."""
+    """Puts the legend below the axes, where it hides no data."""
     axes.legend(
         loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=_LEGEND_SIZE
     )

@@ -1,4 +1,4 @@
-"""The largest stable stiffness of a scene's coupling, calculated in four ways."""
+"""Finds the largest stable stiffness of a scene's coupling, in four ways."""
 
 from __future__ import annotations
 
@@ -42,25 +42,25 @@ _NEAR = 0.1
 class StiffnessLimits:
     """The largest stable stiffness of a coupling, its other gains as in the scene.
 
-    All in N/m for translation and N·m/rad for rotation.
+    Stiffnesses are in N/m for translation and N·m/rad for rotation.
 
     Attributes:
         kind: Kind of the stiffness.
-        against: Name of what the tool touches: the contact in which it is held, which
-            gives way; or a wall that holds it still, the worst that a device can feel
-            (`HeldScene.against_rigid_wall`).
+        against: Contact in which the tool is held, or a rigid wall, the worst case for
+            stability (`HeldScene.against_rigid_wall`).
         stiffness: Stiffness in the scene.
         damping: Damping in the scene, N·s/m or N·m·s/rad.
         eigenvalue: Stiffness at which an eigenvalue of one tick reaches magnitude 1;
-            infinite where none does up to 10⁴ times the scene's; 0 where already 10⁻⁴
-            of the scene's is unstable.
+            infinite if none does up to 10⁴ times the scene's; 0 if even 10⁻⁴ of the
+            scene's is unstable.
         simulated: Stiffness at which a small disturbance no longer dies out in
-            simulation; NaN where there is nothing to compare.
+            simulation; NaN if there is nothing to compare.
         one_axis: The exact limit of one axis with the least inertia and damping that
             device and hand have in any direction where they hold the tool, against a
             rigid wall (`SampledWall`).
         formula: (b + B) / (T/2 + t_d) of the same axis (Gil et al. 2004).
-        limited_by: The motion that starts to grow there: its frequency and what moves.
+        limited_by: Frequency and moving parts of the motion that grows beyond the
+            limit.
     """
 
     kind: Kind
@@ -84,7 +84,7 @@ class StiffnessLimits:
         return self.eigenvalue / self.stiffness
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns the fields and the margin, None for what is not finite."""
+        """Returns the fields and the margin, with None for infinities and NaN."""
         return to_plain_data(
             asdict(self) | {"unit": self.unit, "gain_margin": self.gain_margin}
         )
@@ -103,10 +103,10 @@ def find_stiffness_limits(
         held: The held scene, whose other gains stay.
         kind: Kind of the stiffness that is raised.
         against: Name of the body that the tool touches.
-        progress: Called with the share that is done, in [0, 1].
+        progress: Function that is called with the share done, from 0 to 1.
 
     Raises:
-        ValueError: The scene's coupling has no such stiffness.
+        ValueError: The scene's coupling has no stiffness of that kind.
     """
     report = progress or (lambda share: None)
     stiffness_name, damping_name = _GAINS[kind]
@@ -166,7 +166,7 @@ def find_stiffness_limits(
 
 
 def _find_simulated(growth: Callable[[float], float], near: float) -> float:
-    """Returns where simulated growth passes 1, or NaN if that is not near a value."""
+    """Returns where simulated growth passes 1 near a value, or NaN."""
 
     def excess(logarithm: float) -> float:
         return growth(math.exp(logarithm)) - 1.0
@@ -174,7 +174,7 @@ def _find_simulated(growth: Callable[[float], float], near: float) -> float:
     low, high = math.log(near * (1.0 - _NEAR)), math.log(near * (1.0 + _NEAR))
     try:
         return math.exp(brentq(excess, low, high, xtol=1e-4))
-    except ValueError:  # No change of sign, or nothing to be seen.
+    except ValueError:  # No change of sign, or nothing to measure.
         return math.nan
 
 

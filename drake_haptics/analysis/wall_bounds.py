@@ -1,4 +1,4 @@
-"""Bounds on the stiffness of a wall over delay and over the encoder's resolution."""
+"""Calculates bounds on the stiffness of a wall over delay and encoder resolution."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from drake_haptics.bounds.sampled_spring import (
     calc_quantized_stiffness,
     calc_stable_stiffness,
 )
+from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.report.plain_data import to_plain_data
@@ -35,14 +36,14 @@ _PERIODS = 10.0
 
 @dataclass(frozen=True)
 class DelayBounds:
-    """The largest stiffness over the delay t_d, which a stall adds to.
+    """The largest stiffness of a wall over the delay t_d.
 
     Attributes:
-        wall: The wall that was given.
+        wall: The wall.
         delays_s: t_d on top of the hold's half period, s, (n,).
         exact: The largest stable K by eigenvalues, N/m, (n,).
         law: The law of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).
-        passive: The largest passive K with the same B, (n,); 0 where B alone is not
+        passive: The largest passive K with the same B, (n,); 0 if B alone is not
             passive.
         largest_delay_s: The longest delay with which `wall` is stable, s.
     """
@@ -60,19 +61,24 @@ class DelayBounds:
         """Draws the three bounds over the delay, and the wall as a point."""
         axes = find_axes(axes)
         delays_ms = 1e3 * self.delays_s
-        axes.semilogy(delays_ms, self.exact, label="stable (exact)")
-        axes.semilogy(delays_ms, self.law, "--", label="law of Gil et al.")
+        axes.semilogy(delays_ms, self.exact, color=EIGENVALUE, label="stable (exact)")
+        axes.semilogy(
+            delays_ms, self.law, "--", color=FORMULA, label="law of Gil et al."
+        )
         if self.passive.any():
-            axes.semilogy(delays_ms, self.passive, ":", label="passive")
+            axes.semilogy(
+                delays_ms, self.passive, ":", color=PASSIVITY, label="passive"
+            )
         if self.wall.stiffness > 0.0:
-            axes.plot(1e3 * self.wall.delay_s, self.wall.stiffness, "o", label="wall")
+            delay_ms = 1e3 * self.wall.delay_s
+            axes.plot(delay_ms, self.wall.stiffness, "o", color="black", label="wall")
         axes.set_xlabel("delay, ms")
         axes.set_ylabel("largest stiffness, N/m or N·m/rad")
         axes.legend()
         return axes
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers and lists only."""
+        """Returns the fields, ready for JSON."""
         return to_plain_data(self)
 
 
@@ -80,11 +86,11 @@ class DelayBounds:
 def calc_delay_bounds(
     wall: SampledWall, delays_s: Sequence[float] | np.ndarray | None = None
 ) -> DelayBounds:
-    """Calculates how stiff a wall may be at each delay.
+    """Calculates the largest stiffness of a wall at each delay.
 
     Args:
-        wall: The wall. Its delay and stiffness are those of the point that is drawn;
-            `largest_delay_s` is found for its stiffness.
+        wall: The wall. Its delay and stiffness are drawn as a point, and its stiffness
+            determines `largest_delay_s`.
         delays_s: Delays, s. Defaults to 0 to 10 periods.
 
     Raises:
@@ -116,8 +122,8 @@ class QuantizationBounds:
     Attributes:
         resolutions: Δ, the step of the position, m or rad, (n,).
         stiffness: min(2 b/T, 2 f_c/Δ), N/m or N·m/rad, (n,).
-        sufficient_resolution: f_c T/b: a finer encoder gains nothing, since sampling
-            limits; infinite without damping.
+        sufficient_resolution: f_c T/b: a finer encoder gains nothing, because sampling
+            is the limit; infinite without damping.
     """
 
     resolutions: np.ndarray
@@ -129,7 +135,9 @@ class QuantizationBounds:
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the stiffness over the resolution."""
         axes = find_axes(axes)
-        axes.loglog(self.resolutions, self.stiffness, label="passive below")
+        axes.loglog(
+            self.resolutions, self.stiffness, color=PASSIVITY, label="passive below"
+        )
         if math.isfinite(self.sufficient_resolution):
             axes.axvline(
                 self.sufficient_resolution, ls=":", color="0.5", label="fine enough"
@@ -140,7 +148,7 @@ class QuantizationBounds:
         return axes
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers and lists only."""
+        """Returns the fields, ready for JSON."""
         return to_plain_data(self)
 
 
@@ -150,7 +158,7 @@ def calc_quantization_bounds(
     period_s: float,
     resolutions: Sequence[float] | np.ndarray,
 ) -> QuantizationBounds:
-    """Calculates `calc_quantized_stiffness` over resolutions.
+    """Calculates the largest passive stiffness at each resolution.
 
     Args:
         held_damping: b of device and hand, N·s/m or N·m·s/rad.

@@ -1,4 +1,4 @@
-"""Maps and draws the stiffnesses and dampings that a device can render: its Z-width."""
+"""Maps and draws a device's Z-width: the stiffnesses and dampings it can render."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _PALE = 0.25
 
 @dataclass(frozen=True)
 class HeldBounds:
-    """Bounds from theory on a sampled spring and damper of a held device.
+    """Theoretical bounds on a sampled spring and damper of a held device.
 
     Attributes:
         held_damping: b of device and hand, N·s/m or N·m·s/rad.
@@ -113,7 +113,7 @@ def _plot_bounds(
         color=PASSIVITY,
         label="passivity: (b - |B|)/(T/2 + t_d)",
     )
-    # The required damping crosses what there is.
+    # The required damping equals the available damping.
     missing = np.ma.masked_invalid(passive_damping - bounds.held_damping)
     if (missing <= 0.0).any() and (missing > 0.0).any():
         axes.contour(K, B, missing, levels=[0.0], colors=[PASSIVITY])
@@ -124,7 +124,7 @@ def _plot_bounds(
 def _scale_axes(
     K: np.ndarray, B: np.ndarray, axes: Axes, gains: tuple[float, float] | None
 ) -> None:
-    """Shows the map and the gains, whatever the lines do outside."""
+    """Limits the axes to the map and the gains."""
     if _rises_by_a_factor(K):
         axes.set_xscale("log")
     if _rises_by_a_factor(B):
@@ -151,12 +151,11 @@ class ZWidth:
     and Brown 1994). Units are those of translation, or N·m/rad and N·m·s/rad.
 
     Attributes:
-        stiffness: K, (nK,), rising, N/m.
-        damping: B, (nB,), rising, N·s/m.
-        spectral_radius: (nB, nK), of one period; stable below 1; NaN where the point
-            could not be evaluated.
+        stiffness: K, (nK,), rising, N/m. damping: B, (nB,), rising, N·s/m.
+        spectral_radius: (nB, nK), of one period; stable below 1; NaN if the point could
+            not be evaluated.
         passive_damping: (nB, nK), damping that device and hand must have for the point
-            to be passive, N·s/m; NaN where unknown.
+            to be passive, N·s/m; NaN if unknown.
         reasons: Reasons why points could not be evaluated, by (row, column).
     """
 
@@ -169,15 +168,15 @@ class ZWidth:
     __repr__ = one_line
 
     def largest_stable_stiffness(self) -> np.ndarray:
-        """Returns for each damping the stiffness below which all of the map is stable.
+        """Returns the stiffness below which the whole map is stable, for each damping.
 
         That is where the spectral radius first crosses 1, interpolated along K between
-        two points; as exact as the grid is fine.
+        two points.
 
         Returns:
-            (nB,), N/m. Infinite where the map is stable to its end. NaN where it cannot
-            be told, because already the lowest stiffness is unstable, or a point before
-            the crossing could not be evaluated.
+            (nB,), N/m. Infinite if the map is stable to its end; NaN if even the lowest
+            stiffness is unstable, or a point before the crossing could not be
+            evaluated.
         """
         return np.array([self._cross_one(radius) for radius in self.spectral_radius])
 
@@ -191,9 +190,10 @@ class ZWidth:
         """Draws damping over stiffness, the stable region shaded.
 
         Args:
-            axes: Axes to draw on; new ones if not given. Logarithmic where the grid is.
-            bounds: Damping, period and delay whose lines of theory are drawn.
-            gains: K and B to mark, those of the scene.
+            axes: Axes to draw on, which are logarithmic if the grid is. Defaults to new
+                ones.
+            bounds: Theoretical bounds to draw.
+            gains: K and B of the scene, to mark.
 
         Raises:
             ValueError: The map has only one stiffness or one damping.
@@ -225,7 +225,7 @@ class ZWidth:
         return axes
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns numbers and lists only, None for NaN: ready for JSON."""
+        """Returns the fields, with None for NaN, ready for JSON."""
         return to_plain_data(
             {
                 "stiffness": self.stiffness,
@@ -278,25 +278,24 @@ def calc_z_width(
 ) -> ZWidth:
     """Evaluates a loop for each stiffness with each damping.
 
-    A store may be used again for another grid: points that both have are not computed
-    again.
+    A store may be used again for another grid; common points are not computed again.
 
     Args:
-        evaluate: Function of K and B. Returns ``spectral_radius``, the growth of the
-            fastest growing motion in one period, and, if it knows it,
-            ``passive_damping``, the physical damping that passivity needs. A motion
+        evaluate: Function of K and B that returns ``spectral_radius``, the growth of
+            the fastest growing motion in one period, and optionally
+            ``passive_damping``, the physical damping that passivity requires. A motion
             that nothing acts on, as that of a free body, has growth 1 and must be left
-            out. A ValueError, as where there is no equilibrium, leaves the point open.
-            It must pickle: a function of a module, a partial of one, or a callable
-            dataclass.
-        stiffness: K, (nK,), rising, evenly or by a factor.
+            out. If it raises a ValueError, for instance because there is no
+            equilibrium, the point is not evaluated. It must be picklable: a function of
+            a module, a partial of one, or a callable dataclass.
+        stiffness: K, (nK,), increasing in equal steps or ratios.
         damping: B, (nB,), likewise.
         executor: See `run_study`.
         store: See `run_study`.
         progress: See `run_study`.
 
     Raises:
-        ValueError: A grid does not rise or is not finite, or no point at all could be
+        ValueError: A grid does not increase or is not finite, or no point could be
             evaluated.
         StudyError: `evaluate` raised something else.
     """

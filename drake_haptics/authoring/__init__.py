@@ -1,1 +1,1 @@
-"""Helps with writing scenes: a first one, questions about it, a faster one."""
+"""Helps to write scenes: makes a first one, checks it, and suggests speedups."""

@@ -13,7 +13,7 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.checks import (
     LARGEST_USUAL_EXTENT_M,
     SMALLEST_USUAL_EXTENT_M,
-    question_tolerance,
+    make_tolerance_warnings,
 )
 from drake_haptics.geometry.mesh.placement import (
     describe_origin_beside,
@@ -37,44 +37,44 @@ from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import EnvironmentObject, Tool
 from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
 
-# A tool is held in one hand.
+# Largest extent of a tool, which is held in one hand.
 _LARGEST_USUAL_TOOL_M = 1.0
 # Largest number of the tool's vertices that are checked.
 _VERTICES = 16
 
 
 def check_plausibility(haptic: HapticDiagram) -> list[str]:
-    """Returns sentences about what is probably not intended in a scene."""
+    """Returns a sentence for each thing in a scene that is probably not intended."""
     return [
-        *_question_sizes(haptic),
-        *_question_open(haptic),
-        *question_tolerance(
+        *_make_size_warnings(haptic),
+        *_make_open_mesh_warnings(haptic),
+        *make_tolerance_warnings(
             calc_first_touch(haptic.scene.contact),
             "the tool",
             max(haptic.tool.mesh.report.extent),
         ),
-        *_question_clearance(haptic),
-        *_question_origin(haptic),
-        *_question_reach(haptic),
-        *_question_device(haptic),
-        *question_start(haptic),
+        *_make_clearance_warnings(haptic),
+        *_make_origin_warnings(haptic),
+        *_make_reach_warnings(haptic),
+        *_make_device_warnings(haptic),
+        *make_start_warnings(haptic),
     ]
 
 
-def _question_sizes(haptic: HapticDiagram) -> list[str]:
-    """Asks for the unit of meshes whose size is unlike anything that a hand touches."""
+def _make_size_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about meshes that are probably in another unit."""
     scene = haptic.scene
     objects = zip(scene.environment, haptic.environment, strict=True)
     sentences = [
-        _question_size("tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
+        _make_size_warning("tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
     ] + [
-        _question_size(f"environment[{i}]", item, part, LARGEST_USUAL_EXTENT_M)
+        _make_size_warning(f"environment[{i}]", item, part, LARGEST_USUAL_EXTENT_M)
         for i, (item, part) in enumerate(objects)
     ]
     return [sentence for sentence in sentences if sentence]
 
 
-def _question_size(
+def _make_size_warning(
     key: str,
     item: Tool | EnvironmentObject,
     part: Decomposition,
@@ -91,8 +91,8 @@ def _question_size(
     return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
 
 
-def _question_open(haptic: HapticDiagram) -> list[str]:
-    """Asks about meshes that were probably meant to be solids, but are open."""
+def _make_open_mesh_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about open meshes that are probably meant to be solids."""
     scene = haptic.scene
     parts = [("tool", scene.tool, haptic.tool)] + [
         (f"environment[{i}]", item, part)
@@ -110,10 +110,10 @@ def _question_open(haptic: HapticDiagram) -> list[str]:
     ]
 
 
-def _question_clearance(haptic: HapticDiagram) -> list[str]:
-    """Asks about a tolerance or skin wider than the room that objects leave the tool.
+def _make_clearance_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about a tolerance or skin wider than the tool's clearance.
 
-    The tool is moved along the path of the scene's hand, with your own device as well.
+    The tool is moved along the path of the scene's hand, even with a real device.
     """
     scene, tool = haptic.scene, haptic.tool.core
     objects = [
@@ -149,11 +149,11 @@ def _question_clearance(haptic: HapticDiagram) -> list[str]:
     ]
 
 
-def _question_origin(haptic: HapticDiagram) -> list[str]:
-    """Asks about a tool that is not where its mesh has its origin.
+def _make_origin_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about a tool whose mesh is far from its origin.
 
-    The coupling pulls at the origin: with a long lever to the hand its force is mostly
-    torque, and the apparent mass there is small.
+    The coupling pulls at the origin: far from the hand its force mostly turns the
+    handle, and the apparent mass there is small.
     """
     beside_m = find_origin_beside(haptic.tool.mesh)
     if beside_m is None:
@@ -167,8 +167,8 @@ def _question_origin(haptic: HapticDiagram) -> list[str]:
     ]
 
 
-def _question_reach(haptic: HapticDiagram) -> list[str]:
-    """Asks whether there is anything to touch."""
+def _make_reach_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns a sentence if no object is within reach."""
     if haptic.backend is None:
         where = "where the hand's path leads the tool"
         p_WT, radius_m = _sample_tool_box(haptic), 0.0
@@ -200,14 +200,14 @@ def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
 
 
 def _find_corners(tool: Decomposition, X_WT: RigidTransform) -> np.ndarray:
-    """Returns corners of the tool's box, (8, 3), m in the world."""
+    """Returns corners of the tool's bounding box, (8, 3), m in the world."""
     box = zip(*_find_box(tool.mesh.vertices), strict=True)
     corners = np.array(np.meshgrid(*box)).reshape(3, -1)
     return (X_WT @ corners).T
 
 
 def _find_workspace(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
-    """Returns the middle of the workspace, (1, 1, 3), and how far the tool gets, m."""
+    """Returns the middle of the workspace, (1, 1, 3), and the reach of the tool, m."""
     scene = haptic.scene
     site = find_device_site(scene)
     center = load_device_preset(scene.device.preset).workspace_center_m
@@ -221,7 +221,7 @@ def _calc_gap(p_WT: np.ndarray, X_WO: RigidTransform, part: Decomposition) -> fl
     """Returns the least gap between boxes of points and an object's box, m.
 
     Args:
-        p_WT: (n, k, 3) points; each k of them get a box, along the object's axes.
+        p_WT: (n, k, 3) points; every k of them have a box along the object's axes.
         X_WO: Pose of the object.
         part: Pieces of the object's mesh.
     """
@@ -236,8 +236,8 @@ def _find_box(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return vertices.min(axis=0), vertices.max(axis=0)
 
 
-def _question_device(haptic: HapticDiagram) -> list[str]:
-    """Asks whether the scene's preset is that of the device."""
+def _make_device_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about a device that probably is not the scene's preset."""
     device, backend = haptic.scene.device, haptic.backend
     preset = load_device_preset(device.preset)
     sentences = []
@@ -266,16 +266,16 @@ def _question_device(haptic: HapticDiagram) -> list[str]:
     return sentences
 
 
-def question_start(haptic: HapticDiagram) -> list[str]:
-    """Returns sentences about where the tool starts inside an object, if it does.
+def make_start_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about objects inside which the tool starts.
 
     Args:
-        haptic: Diagram of the scene; a device's handle is taken where it is now.
+        haptic: Diagram of the scene; a device's handle is taken at its present pose.
     """
     scene = haptic.scene
     if haptic.backend is None:
         X_WT = make_hand_path(scene.hand.path).start
-        # A scene's own hand may begin pressed, but not against all of its device.
+        # The scene's hand may begin pressed, but not with all the force of its device.
         max_force_N = find_device_site(scene).max_force_N
         allowed_m = max_force_N / scene.contact.stiffness_N_per_m
         remedy = "move hand.path.waypoints[0] to a place beside it"
@@ -307,10 +307,10 @@ def question_start(haptic: HapticDiagram) -> list[str]:
 
 
 def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
-    """Returns how deep the tool is in each object, m; 0 where there is no contact.
+    """Returns how deep the tool is in each object, m; 0 without a contact.
 
-    The run's own query is evaluated, in a Context of its own, so that the depth is the
-    one that the run begins with; a law of contact without a query gets a similar one.
+    The query of the diagram is evaluated in a new Context, so that the depth is the one
+    with which the run begins; under the constraint law a similar query is made.
     """
     penalty = haptic.loop.penalty
     query = _make_query(haptic) if penalty is None else penalty.contact_query
@@ -335,7 +335,7 @@ def _make_query(haptic: HapticDiagram) -> ContactQuery:
 
 
 def _is_inside(tool: Decomposition, part: Decomposition, X_OT: RigidTransform) -> bool:
-    """Tells whether the whole tool is in the solid, with no surface near to push."""
+    """Returns whether the whole tool is in the solid, far from its surface."""
     solid = part.mesh.triangles[part.mesh.solid.astype(bool)]
     step = max(1, len(tool.mesh.vertices) // _VERTICES)
     p_TV = tool.mesh.vertices[::step]

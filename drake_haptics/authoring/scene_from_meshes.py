@@ -30,7 +30,7 @@ _LARGEST_TOOL_M = 1.0
 # In larger environments coordinates are too coarse for contacts of micrometers.
 _LARGEST_ENVIRONMENT_M = 1e3
 _SMALLEST_EXTENT_M = 2e-3
-# The path keeps well inside a workspace of 12 cm radius.
+# The path stays well inside a workspace of 12 cm radius.
 _CLEARANCE_M = 0.03
 _LARGEST_CIRCLE_M = 0.025
 _SMALLEST_CIRCLE_M = 1e-3
@@ -38,7 +38,7 @@ _LARGEST_RISE_M = 0.03
 _CIRCLE_POINTS = 16
 _APPROACH_S = 1.5
 _CIRCLE_STEP_S = 0.4
-# Digits that nobody feels are left out of a scene: a nanometer, a microsecond.
+# Digits of positions and times in a scene: a nanometer, a microsecond.
 _DECIMALS_M = 9
 _DECIMALS_S = 6
 
@@ -52,10 +52,9 @@ def make_scene_for_meshes(
 ) -> Scene:
     """Makes a scene of two meshes.
 
-    The environment's frame is the world's. The tool starts above the middle
-    of it, comes down, touches, and scrapes in a circle, pressed by the hand's
-    spring with a few newtons, for ever. A tool's file that has its origin far
-    beside the mesh is centered (`tool.center`).
+    The environment's frame is the world's. The tool starts above its middle, comes
+    down, touches, and scrapes in a circle forever, pressed by the hand's spring with a
+    few newtons. A tool whose mesh is far from its origin is centered (`tool.center`).
 
     Args:
         tool_path: Mesh of the tool.
@@ -65,7 +64,7 @@ def make_scene_for_meshes(
 
     Raises:
         SceneError: The tool does not fit into the device's workspace.
-        drake_haptics.common.errors.MeshError: A mesh cannot be treated.
+        drake_haptics.common.errors.MeshError: A mesh cannot be used.
     """
     tool_path = Path(resolve_package_url(tool_path))
     environment_path = Path(resolve_package_url(environment_path))
@@ -83,8 +82,8 @@ def make_scene_for_meshes(
     if is_far:
         tool = center(tool)
     tip = _find_tip(tool)
-    # The handle is above the tip, at half the tool's height: pressing straight down
-    # then turns it little.
+    # The handle is above the tip, at half the tool's height, so that pressing down
+    # hardly turns it.
     grip_point = tip.copy()
     grip_point[2] = (tool.vertices[:, 2].min() + tool.vertices[:, 2].max()) / 2.0
     tolerance = min(
@@ -114,7 +113,7 @@ def make_scene_for_meshes(
 def _check_extent(
     name: str, path: Path, mesh: Mesh, scale: float, largest_m: float
 ) -> None:
-    """Refuses a size with which nothing could be felt: most often a wrong unit."""
+    """Refuses a size that cannot be felt, most often because of a wrong unit."""
     extent = max(mesh.report.extent)
     if _SMALLEST_EXTENT_M <= extent <= largest_m:
         return
@@ -138,7 +137,7 @@ def _find_tip(tool: Mesh) -> np.ndarray:
 
 
 def _find_place(environment: Mesh) -> np.ndarray:
-    """Returns x, y of the place facing up that is nearest to the middle, m."""
+    """Returns x and y of the upward-facing place nearest to the middle, m."""
     a, b, c = np.swapaxes(environment.vertices[environment.triangles], 0, 1)
     normal = np.cross(b - a, c - a)
     up = normal[:, 2] > 0.5 * np.linalg.norm(normal, axis=1)
@@ -151,7 +150,7 @@ def _find_place(environment: Mesh) -> np.ndarray:
 
 
 def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParameters:
-    """Returns a path that comes down, goes around pressing, and goes up again."""
+    """Returns a path that comes down, scrapes in a circle, and goes up again."""
     place = _find_place(environment) - tip[:2]
     radius = min(_LARGEST_CIRCLE_M, 0.2 * min(environment.report.extent[:2]))
     angles = np.linspace(0.0, 2.0 * np.pi, _CIRCLE_POINTS + 1)
@@ -162,11 +161,11 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParame
         seen = np.isfinite(touch)
         if not seen.any():
             raise SceneError("the tool, lowered onto the environment, misses it")
-        # Where there is nothing below, the hand goes on at the height of the rest.
+        # With nothing below, the hand continues at the height of the rest.
         touch[~seen] = touch[seen].mean()
         if np.ptp(touch) <= _LARGEST_RISE_M:
             break
-        # At the edge of a cliff no circle is small enough: press in place.
+        # At the edge of a cliff no circle is small enough, so press in place.
         radius = 0.5 * radius if radius > _SMALLEST_CIRCLE_M else 0.0
     xy = place + radius * circle
     press = _PRESS_N / NOMINAL_GRIP.stiffness_N_per_m
@@ -189,6 +188,6 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParame
 
 
 def _round_position(position: ArrayLike) -> list[float]:
-    """Returns a position (3,), m, as numbers that are short to read."""
-    # 0 is added so that none is minus nothing.
+    """Returns a position (3,), m, rounded."""
+    # Adding 0 turns -0.0 into 0.0.
     return (np.asarray(position).round(_DECIMALS_M) + 0.0).tolist()

@@ -1,4 +1,4 @@
-"""Names the key of a scene that would shorten its ticks most."""
+"""Suggests the key of a scene that would shorten its ticks most."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.profiling import Part
 
-# Parts that take a smaller share of what a tick may take are not worth a change.
+# Parts with a smaller share of the allowed time are not worth a change.
 _WORTH_IT = 0.1
-# Share of the period; a loop whose ticks usually take more misses many.
+# Share of the period; a loop whose ticks usually take longer misses many.
 _MAY_TAKE = 0.8
-# Parts that effects add, one for each, and the key that takes it away.
+# Parts of effects, and the key of each effect.
 _EFFECTS = {
     "force_shading": "effects.shading",
     "stick_slip_friction": "effects.friction",
@@ -22,11 +22,11 @@ _EFFECTS = {
 
 
 def suggest_speedup(parts: Iterable[Part], scene: Scene) -> str | None:
-    """Names the key that helps most where the ticks of a run take too long.
+    """Returns the change that helps most if the ticks of a run take too long.
 
     Returns:
-        A sentence; None where a tick takes less than four fifths of its period and than
-        `device.tick_budget_us`, or no key shortens a part that takes much.
+        A sentence; None if a tick takes less than four fifths of its period and less
+        than `device.tick_budget_us`, or if no key shortens a part that takes much.
     """
     costs_us = {part.name: part.mean_us for part in parts}
     most_us = _MAY_TAKE * 1e6 / scene.device.rate_hz
@@ -41,10 +41,10 @@ def suggest_speedup(parts: Iterable[Part], scene: Scene) -> str | None:
 
 
 def find_key_that_helps(costs_us: Mapping[str, float], scene: Scene) -> str | None:
-    """Returns what to change in a scene so that its costliest part costs less.
+    """Returns the change of a scene that shortens its slowest part.
 
     Returns:
-        A sentence, or None where no key shortens a part that takes much.
+        A sentence, or None if no key shortens a part that takes much.
     """
     costs_us = {name: us for name, us in costs_us.items() if _find_key(name, scene)}
     if not costs_us:
@@ -60,7 +60,7 @@ def find_key_that_helps(costs_us: Mapping[str, float], scene: Scene) -> str | No
 
 
 def _find_key(name: str, scene: Scene) -> str | None:
-    """Returns the key that shortens a part, and how it does."""
+    """Returns the key that shortens a part, and how."""
     if name in ("contact_clustering", "penalty_force"):
         if scene.contact.clustering == "shared":
             return (
@@ -68,7 +68,7 @@ def _find_key(name: str, scene: Scene) -> str | None:
                 " the tool, makes few contacts of many (the force then jumps a little)"
             )
         return _find_fewer_pieces(scene)
-    if name in ("contact_query", "constraint_tool_step"):
+    if name in ("contact_query", "contact_chain", "constraint_tool_step"):
         return _find_fewer_pieces(scene)
     if name == "haptic_visualizer":
         return "device.tick_budget_us leaves drawing out of ticks that take longer"
@@ -78,7 +78,7 @@ def _find_key(name: str, scene: Scene) -> str | None:
 
 
 def _find_fewer_pieces(scene: Scene) -> str | None:
-    """Returns the key that gives the query fewer pairs of pieces to look at."""
+    """Returns the key that gives the query fewer pairs of pieces."""
     if scene.tool.decomposition == "surface":
         return (
             "tool.decomposition: merged, with tool.decomposition_error_m: 0.0001,"

@@ -1,1 +1,1 @@
-"""Limits of stiffness and damping in closed form."""
+"""Calculates limits of stiffness and damping in closed form."""

@@ -1,4 +1,4 @@
-"""Checks whether a coupling is passive, stable and rated for on a device in a hand."""
+"""Checks whether a coupling is stable, passive and within a device's ratings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from drake_haptics.scene.device_preset import DevicePreset
 
 
 class SpringAndDamper(Protocol):
-    """Six-axis gains, as `CouplingGains` and a scene's `Coupling` have them."""
+    """Six-axis gains, such as `CouplingGains` and `CouplingParameters`."""
 
     @property
     def stiffness_N_per_m(self) -> float: ...  # noqa: D102
@@ -57,7 +57,7 @@ class BrokenBound:
     """A bound that a coupling breaks.
 
     Attributes:
-        key: Name of the value to be changed, one of `SpringAndDamper`.
+        key: Name of the value to be changed, an attribute of `SpringAndDamper`.
         words: Consequence and remedy, without symbols.
         sentence: Sentence with the value, the bound and its law, and the remedy.
     """
@@ -108,9 +108,9 @@ def find_broken_bounds(
     """Checks a coupling against the bounds of `drake_haptics.bounds.sampled_spring`.
 
     Returns:
-        Each bound that is broken. Empty if the loop is stable by
-        `calc_stable_stiffness` and `calc_sampled_damping`, and passive by
-        `calc_passive_damping`, in which the damping of the hand counts.
+        The broken bounds; empty if the loop is stable by `calc_stable_stiffness` and
+        `calc_sampled_damping`, and passive by `calc_passive_damping` with the damping
+        of the hand.
 
     Raises:
         ValueError: The period, the mass or the inertia is not positive.
@@ -135,11 +135,11 @@ def find_broken_bounds(
 def find_exceeded_ratings(
     coupling: SpringAndDamper, preset: DevicePreset
 ) -> list[BrokenBound]:
-    """Compares a coupling with what its device is rated for.
+    """Compares a coupling with the ratings of its device.
 
     Args:
         coupling: K and B of both kinds.
-        preset: The device; a rating that is not known is exceeded by nothing.
+        preset: The device; ratings that are unknown are skipped.
     """
     found: list[BrokenBound] = []
     for kind in (_TRANSLATION, _ROTATION):

@@ -1,9 +1,9 @@
 """Limits the stiffness of contact on bodies that a discrete plant steps explicitly.
 
-A discrete `MultibodyPlant` takes applied forces as they are at the start of a step and
-moves bodies with the velocity at its end. On a mass m, a spring K and damper B stay
-stable with a step h as long as K <= (4 m - 2 B h) / h². A continuous plant has no
-such limit: its integrator takes smaller steps.
+A discrete `MultibodyPlant` applies the forces at the start of a step and moves bodies
+with the velocity at its end. On a mass m, a spring K and damper B are stable with a
+step h if K <= (4 m - 2 B h) / h². A continuous plant has no such limit, because its
+integrator takes smaller steps.
 """
 
 from __future__ import annotations
@@ -18,9 +18,8 @@ from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 def calc_explicit_stiffness(mass: float, damping: float, step_s: float) -> float:
     """Returns the largest K that is stable with a damper B on a free mass.
 
-    (4 m - 2 B h) / h²: the characteristic polynomial of v' = v - h (K x + B v) / m,
-    x' = x + h v' has a root at -1 there. Below zero where the damper alone is not
-    stable.
+    At K = (4 m - 2 B h) / h² the characteristic polynomial of v' = v - h (K x + B v) /
+    m, x' = x + h v' has a root at -1. It is negative if the damper alone is unstable.
 
     Args:
         mass: m, kg; or an inertia about an axis, kg·m².
@@ -33,9 +32,9 @@ def calc_explicit_stiffness(mass: float, damping: float, step_s: float) -> float
 def calc_spatial_mobility(plant: MultibodyPlant, body: RigidBody) -> np.ndarray:
     """Returns J M⁻¹ Jᵀ (6, 6) of a body's frame at the plant's default positions.
 
-    It turns a spatial force [τ; f] at the body's origin into the body's spatial
-    acceleration, both in the world; zero where it cannot move. For a free body it is
-    the same everywhere but for its orientation.
+    It maps a spatial force [τ; f] at the body's origin to the body's spatial
+    acceleration, both in the world, and is zero if the body cannot move. For a free
+    body it depends only on the orientation.
     """
     if plant.num_velocities() == 0:
         return np.zeros((6, 6))
@@ -44,7 +43,7 @@ def calc_spatial_mobility(plant: MultibodyPlant, body: RigidBody) -> np.ndarray:
     J_WB = plant.CalcJacobianSpatialVelocity(
         context, JacobianWrtVariable.kV, body.body_frame(), np.zeros(3), world, world
     )
-    # Where there are massless bodies only what can be moved counts.
+    # Least squares, because massless bodies make the mass matrix singular.
     solution = np.linalg.lstsq(plant.CalcMassMatrix(context), J_WB.T, rcond=None)[0]
     return J_WB @ solution
 
@@ -52,7 +51,7 @@ def calc_spatial_mobility(plant: MultibodyPlant, body: RigidBody) -> np.ndarray:
 def calc_largest_point_mobility(
     plant: MultibodyPlant, body: RigidBody, p_BV: np.ndarray
 ) -> float:
-    """Returns the largest mobility of some points of a body, 1/kg.
+    """Returns the largest mobility of points of a body, 1/kg.
 
     Its inverse is the smallest apparent mass that a force meets at any of the points in
     any direction.
@@ -85,7 +84,7 @@ def check_explicit_stiffness(
     """Checks a spring and damper against `calc_explicit_stiffness`.
 
     Args:
-        what: Name of what has these gains, for the sentence.
+        what: Name of the spring and damper, for the sentence.
         stiffness: Stiffness K.
         damping: Damping B.
         mobilities: Mobilities of the bodies at either end, 1/kg or 1/(kg·m²).
@@ -93,8 +92,7 @@ def check_explicit_stiffness(
         units: Units of the stiffness and of the mass.
 
     Returns:
-        A sentence that says which value, which bound, and what to change; None where
-        the bound holds.
+        A sentence with the value, the bound and the remedy; None if the bound holds.
     """
     mobility = sum(mobilities)
     if mobility <= 0.0:

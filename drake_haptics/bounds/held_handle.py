@@ -1,4 +1,4 @@
-"""Finds mass and damping of a held arm at its handle, and checks a coupling on it."""
+"""Calculates mass and damping of a held arm at its handle; checks couplings on it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
     """Checks a scene's coupling on its simulated device in its hand.
 
     Returns:
-        A sentence for each bound that is broken, as `check_coupling` has it.
+        A sentence for each broken bound, as from `check_coupling`.
     """
     held = calc_scene_handle(scene, device)
     period_s = scene.device.wrench_period_s
@@ -39,16 +39,16 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
 def check_real_coupling(scene: Scene) -> list[str]:
     """Checks a scene's coupling on a real device of the scene's preset.
 
-    The coupling is held to the device's ratings and, where the preset has a model, to
-    the bounds on its twin. Nobody knows how firmly a real device is held: the bounds
-    are those in the loosest grip.
+    The coupling is compared with the device's ratings and, if the preset has a model,
+    with the bounds on its twin. How firmly a real device is held is unknown, so the
+    bounds are those in the loosest grip.
 
     Returns:
         A sentence for each rating that is exceeded, then those of
         `check_scene_coupling`.
 
     Raises:
-        SceneError: There is no such preset, or its model is no arm.
+        SceneError: There is no such preset, or its model is not an arm.
     """
     preset = load_device_preset(scene.device.preset)
     found = find_real_bounds(scene, preset, calc_loosely_held(scene, preset))
@@ -76,10 +76,10 @@ def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
 
     Args:
         scene: Scene with the grasp of the tool.
-        preset: Preset of the scene; None is returned for one without a model.
+        preset: Preset of the scene. Without a model the result is None.
 
     Raises:
-        SceneError: Its model is no arm.
+        SceneError: The model is not an arm.
     """
     if not preset.has_model:
         return None
@@ -90,7 +90,7 @@ def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
         handle = plant.GetBodyByName(preset.handle_link)
         weld_hand(plant, handle, grip)
         plant.Finalize()
-    except RuntimeError as error:  # Of Drake's parser, or there is no such link.
+    except RuntimeError as error:  # From Drake's parser, or the link does not exist.
         raise SceneError(
             f"device.preset '{scene.device.preset}', with handle_link"
             f" '{preset.handle_link}' of the model {preset.model_path}: {error}"
@@ -102,7 +102,7 @@ def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
 def calc_force_delay(scene: Scene) -> float:
     """Returns the delay with which a scene's simulated device shows a wrench, s.
 
-    That is the delay t_d on top of the hold, as the laws of stability count it.
+    That is the delay t_d on top of the hold in the laws of stability.
     """
     delay = scene.device.twin.delay
     return 0.0 if delay is None else delay.samples * scene.device.wrench_period_s
@@ -111,12 +111,12 @@ def calc_force_delay(scene: Scene) -> float:
 def calc_scene_handle(
     scene: Scene, device: HapticDevice, root: Context | None = None
 ) -> HeldHandle:
-    """Returns the held handle of a scene's simulated device where it holds the tool.
+    """Returns the held handle of a scene's simulated device at the grasp of the tool.
 
     Args:
-        scene: Names preset, grip and grasp.
+        scene: Scene that names preset, grip and grasp.
         device: Simulated device of the scene, from `make_simulated_device`.
-        root: Context with the arm's position; at its default angles if not given.
+        root: Context with the arm's position. Defaults to its default angles.
     """
     plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
     handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
@@ -139,17 +139,17 @@ def calc_held_handle(
 ) -> HeldHandle:
     """Calculates the least inertia, damping and stiffness at a point of the handle.
 
-    Where all joints are free, a force at the point meets the apparent inertia
-    (J M⁻¹ Jᵀ)⁻¹, and in the same way damping and stiffness of joints and hand. The
-    least of each in any direction is the worst case for a coupling. Far from the hand
-    all three are less: the handle turns.
+    With all joints free, the apparent inertia at the point is (J M⁻¹ Jᵀ)⁻¹, and
+    likewise for damping and stiffness of joints and hand. The least of each in any
+    direction is the worst case for a coupling. Far from the hand all three are smaller,
+    because the handle turns.
 
     Args:
         plant: The arm, its hand welded to it.
         handle: The body that is held at its origin.
-        grip: Grip whose spring and damper count; None where the arm is free.
-        p_HQ: The point, (3,), m: where a coupling pulls. The origin if not given.
-        context: The plant's; at the default angles if not given.
+        grip: Grip of the hand; None for a free arm.
+        p_HQ: The point at which a coupling pulls, (3,), m. Defaults to the origin.
+        context: Context of the plant. Defaults to its default context.
     """
     context = context or plant.CreateDefaultContext()
     J_WH = _calc_jacobian(plant, handle, context, np.zeros(3))
@@ -190,7 +190,7 @@ def _calc_jacobian(
 
 
 def _calc_least(J: np.ndarray, of_joints: np.ndarray) -> float:
-    """Returns the least of (J X⁻¹ Jᵀ)⁻¹ in any direction; 0 where X leaves one free."""
+    """Returns the least (J X⁻¹ Jᵀ)⁻¹ in any direction; 0 if X is singular."""
     if np.linalg.matrix_rank(of_joints, hermitian=True) < len(of_joints):
         return 0.0
     return float(1.0 / np.linalg.norm(J @ np.linalg.solve(of_joints, J.T), 2))

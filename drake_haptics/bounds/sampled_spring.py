@@ -1,10 +1,10 @@
-"""Known limits of stiffness and damping of a sampled spring on a device.
+"""Calculates limits of stiffness and damping of a sampled spring on a device.
 
 A spring K and damper B, calculated once per period T from sampled positions, held in
 between, and delayed by t_d, act on a handle of mass m whose device and hand damp it by
-b. Each bound holds for translation (N/m, N·s/m, kg) as for rotation (N·m/rad,
-N·m·s/rad, kg·m²). The velocity is the backward difference of the positions, as from
-an encoder.
+b. Each bound holds for translation (N/m, N·s/m, kg) and for rotation (N·m/rad,
+N·m·s/rad, kg·m²). The velocity is the backward difference of the positions, as from an
+encoder.
 """
 
 from __future__ import annotations
@@ -21,11 +21,10 @@ def calc_passive_damping(
 ) -> float:
     """Returns the physical damping b that makes a sampled K and B passive.
 
-    `b > K T/2 + |B|` (Colgate and Schenkel 1997): then no passive hand, however it
-    holds, can be driven into motion. With a delay t_d, `b > K (T/2 + t_d) + |B|` is
-    enough; it is needed too where B is zero or negative. Between whole periods a
-    delay counts as the mean of itself and the next whole period
-    (docs/stability-theory.md).
+    If `b > K T/2 + |B|` (Colgate and Schenkel 1997), no passive hand can be driven into
+    motion. With a delay t_d, `b > K (T/2 + t_d) + |B|` is sufficient; it is also
+    necessary if B is zero or negative. A delay between whole periods counts as the mean
+    of itself and the next whole period (docs/stability-theory.md).
     """
     return stiffness * _calc_age(period_s, delay_s) + abs(damping)
 
@@ -35,7 +34,7 @@ def calc_passive_stiffness(
 ) -> float:
     """Returns the stiffness K up to which a sampled K and B are passive.
 
-    The bound of `calc_passive_damping`, solved for K. Zero where B alone is not
+    It is the bound of `calc_passive_damping`, solved for K, and zero if B alone is not
     passive.
     """
     left = held_damping - abs(damping)
@@ -59,8 +58,8 @@ def calc_stable_delay(
     """Returns the delay t_d below which the sampled loop is stable, s.
 
     t_d < (b + B)/K - T/2, the law of `calc_stable_stiffness` solved for the delay. It
-    is also how long a loop may stall: until the next tick the force is older by that
-    much. Zero where the loop is unstable without any, infinite without stiffness.
+    is also the longest allowed stall of the loop, which delays the force as much. It is
+    zero if the loop is unstable without delay, and infinite without stiffness.
     """
     if stiffness == 0.0:
         return math.inf
@@ -72,8 +71,8 @@ def calc_quantized_stiffness(
 ) -> float:
     """Returns the stiffness up to which a spring on an encoder is passive.
 
-    K <= min(2 b/T, 2 f_c/Δ) (Abbott and Okamura 2005): damping pays for sampling,
-    Coulomb friction for rounding.
+    K <= min(2 b/T, 2 f_c/Δ) (Abbott and Okamura 2005): damping compensates for
+    sampling, and Coulomb friction for quantization.
 
     Args:
         held_damping: Damping b of device and hand, N·s/m or N·m·s/rad.
@@ -87,9 +86,9 @@ def calc_quantized_stiffness(
 def calc_sampled_stiffness(mass: float, damping: float, period_s: float) -> float:
     """Returns the stiffness K below which K and B are stable on a free mass.
 
-    Exact, without delay and physical damping: K T²/m < 2 β (2 - β) / (2 + β) with
-    β = B T/m < 2; Jury's criterion on 2 z³ + (α + β - 4) z² + (2 + α) z - β. Zero
-    where no stiffness is stable.
+    Exactly, without delay and physical damping: K T²/m < 2 β (2 - β) / (2 + β) with β =
+    B T/m < 2; Jury's criterion on 2 z³ + (α + β - 4) z² + (2 + α) z - β. It is zero if
+    no stiffness is stable.
     """
     beta = damping * period_s / mass
     alpha = 2.0 * beta * (2.0 - beta) / (2.0 + beta)
@@ -99,8 +98,8 @@ def calc_sampled_stiffness(mass: float, damping: float, period_s: float) -> floa
 def calc_sampled_damping(mass: float, stiffness: float, period_s: float) -> float:
     """Returns the largest B that is stable with a stiffness K on a free mass.
 
-    The upper root of Jury's boundary, 2 β² + (α - 4) β + 2 α = 0 with α = K T²/m and
-    β = B T/m: 2 m/T for K = 0, and less for a spring. Zero where the spring is too
+    The upper root of Jury's boundary, 2 β² + (α - 4) β + 2 α = 0 with α = K T²/m and β
+    = B T/m: 2 m/T for K = 0, and less with a spring. It is zero if the spring is too
     stiff for any damping, α > 12 - 8 √2.
     """
     alpha = stiffness * period_s**2 / mass
@@ -118,15 +117,15 @@ def calc_returnable_energy(
     """Returns the energy that a passive virtual world can return to a device, J.
 
     That is the energy of its springs, F²/(2 K) each, of the tool's motion, and of its
-    weight. It is the `reserve_J` of a `PassivityControl`: a larger balance comes of
+    weight. It is the `reserve_J` of a `PassivityControl`; a larger balance comes from
     dissipation.
 
     Args:
         springs: The largest load and the stiffness of each, in N and N/m or N·m and
-            N·m/rad: the coupling's two at the device's limits, and the softest
-            contact's. One without stiffness holds nothing.
-        tool_mass_kg: Mass of the tool, kg; a hand moves it with 1 m/s at most.
-        lift_J: Its weight times how high it can be lifted, J; 0 without gravity.
+            N·m/rad: the two of the coupling at the device's limits, and that of the
+            softest contact. Springs without stiffness are skipped.
+        tool_mass_kg: Mass of the tool, kg, which a hand moves with at most 1 m/s.
+        lift_J: Weight of the tool times its largest lift, J; 0 without gravity.
     """
     elastic = sum(load**2 / (2.0 * k) for load, k in springs if k > 0.0)
     return elastic + 0.5 * tool_mass_kg * _FASTEST_HAND_M_PER_S**2 + lift_J

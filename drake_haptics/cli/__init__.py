@@ -1,7 +1,7 @@
-"""The command line `drake-haptics`. It holds no logic: it asks the package.
+"""The command line `drake-haptics`, which holds no logic of its own.
 
-Each subcommand is imported when it is called, so that `check` and `decompose`
-start at once and never import Drake.
+Each subcommand is imported when it is called, so that `check` and `decompose` start at
+once, without Drake.
 """
 
 from __future__ import annotations
@@ -13,81 +13,23 @@ from typing import Any
 
 import click
 
+from drake_haptics.cli.command_help import LazyGroup
 from drake_haptics.cli.endings import failures_in_words
-from drake_haptics.cli.lessons import LazyGroup, Lesson
 
-_COMMANDS = {
-    "Feel": {
-        "run": (
-            "drake_haptics.cli.run",
-            "Run a scene, or a tool mesh on another mesh.",
-        ),
-        "device": (
-            "drake_haptics.cli.device",
-            "Serve a simulated device to `run` in another terminal.",
-        ),
-        "log": (
-            "drake_haptics.cli.log",
-            "Inspect, replay, compare and export recorded runs.",
-        ),
-    },
-    "Included": {
-        "scenes": ("drake_haptics.cli.listings", "List the scenes that are included."),
-        "devices": (
-            "drake_haptics.cli.listings",
-            "List the devices that are included.",
-        ),
-    },
-    "Your meshes": {
-        "check": (
-            "drake_haptics.cli.meshes",
-            "Report the contents and defects of a mesh file.",
-        ),
-        "decompose": (
-            "drake_haptics.cli.meshes",
-            "Cut the surface of a mesh into convex pieces.",
-        ),
-    },
+_CLI = "drake_haptics.cli"
+_MODULES = {
+    "Feel": {"run": f"{_CLI}.run", "device": f"{_CLI}.device", "log": f"{_CLI}.log"},
+    "Included": dict.fromkeys(("scenes", "devices"), f"{_CLI}.listings"),
+    "Your meshes": dict.fromkeys(("check", "decompose"), f"{_CLI}.meshes"),
     "How stiff, how exact, how fast": {
-        "stability": (
-            "drake_haptics.cli.stability",
-            "Compute how stable a scene is and how stiff its coupling may be.",
-        ),
-        "accuracy": (
-            "drake_haptics.cli.accuracy",
-            "Measure what accuracy costs in time; keep a time budget.",
-        ),
-        "bench": (
-            "drake_haptics.cli.bench",
-            "Measure queries and loops beside other libraries.",
-        ),
-        "paper": (
-            "drake_haptics.cli.paper",
-            "Reproduce the evaluation of the paper, and compare.",
-        ),
+        name: f"{_CLI}.{name}" for name in ("stability", "accuracy", "bench", "paper")
     },
-    "This program": {
-        "completion": (
-            "drake_haptics.cli.completion",
-            "Let the Tab key complete commands, options and scenes.",
-        ),
-    },
+    "This program": {"completion": f"{_CLI}.completion"},
 }
-
-_LESSON = Lesson(
-    examples=[
-        ("A spoon scrapes a cup, in the browser", "drake-haptics run cup_spoon"),
-        ("Move the spoon yourself", "drake-haptics run cup_spoon --device mouse:"),
-        ("Check your own mesh", "drake-haptics check my_mesh.stl --unit mm"),
-    ],
-    exits="0: success. 1: an input cannot be used. 2: wrong command line. 3: done, and"
-    " the answer is no. 130: ended by Ctrl-C. docs/command-line.md has the table.",
-    further="`drake-haptics COMMAND --help` explains each command, with examples.",
-)
 
 
 class _Program(LazyGroup):
-    """The whole program, where every failure ends as a message."""
+    """The whole program, which turns every failure into a message."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Runs the command."""
@@ -97,8 +39,7 @@ class _Program(LazyGroup):
 
 @click.group(
     cls=_Program,
-    commands_by_heading=_COMMANDS,
-    lesson=_LESSON,
+    modules=_MODULES,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -120,6 +61,6 @@ def main(ctx: click.Context, debug: bool) -> None:
         ctx.color = False
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # m² is no reason to fail in ASCII
+            stream.reconfigure(errors="replace")  # m² must not fail in ASCII
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

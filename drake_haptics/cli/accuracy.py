@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 from rich.console import Console
@@ -14,16 +13,15 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_haptics.analysis.jobs.study import StudyError
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_scene, complete_setting
 from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.endings import ExitCode, naming
-from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
+    file_option,
     json_option,
     load_set_scene,
-    require_folder,
     require_writable,
     set_option,
     write_call,
@@ -98,7 +96,7 @@ def print_study(console: Console, study: AccuracyStudy) -> None:
 def print_choice(
     console: Console, choice: BudgetChoice, scene: Scene, name: str
 ) -> None:
-    """Prints the outcome for a budget, and what is given up for it."""
+    """Prints the outcome for a budget, and the accuracy that it costs."""
     console.print(describe_outcome(choice, name), style="bold")
     if not choice.holds:
         for sentence in describe_help(choice):
@@ -111,7 +109,7 @@ def print_choice(
 def _make_table(study: AccuracyStudy) -> Table:
     columns = get_columns(study)
     table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
-    # In a narrow terminal labels take two lines, and figures stay whole.
+    # In a narrow terminal labels wrap and figures do not.
     table.add_column("setting")
     for column in columns:
         table.add_column(f"{column.head}\n{column.unit}", justify="right", no_wrap=True)
@@ -122,14 +120,7 @@ def _make_table(study: AccuracyStudy) -> Table:
     return table
 
 
-_FILE: dict[str, Any] = {
-    "type": click.Path(dir_okay=False, path_type=Path),
-    "metavar": "FILE",
-    "callback": require_folder,
-}
-
-
-@click.command(cls=CommandWithExamples, lesson=lessons.ACCURACY)
+@click.command(cls=CommandWithExamples)
 @click.argument("scene", default="cup_spoon", shell_complete=complete_scene)
 @click.option(
     "--quick",
@@ -149,13 +140,12 @@ _FILE: dict[str, Any] = {
     "--instructions", is_flag=True, help="Also count the core's, with valgrind."
 )
 @click.option("--no-peers", is_flag=True, help="Leave other libraries out.")
-@click.option(
+@file_option(
     "--out",
-    **_FILE,
     help="The page; its picture is written beside it.  [default: SCENE-accuracy.html]",
 )
 @set_option
-@click.option("--store", **_FILE, help="Keep results here, and continue from them.")
+@file_option("--store", help="Keep results here, and continue from them.")
 @click.option(
     "--budget-us",
     type=FiniteRange(0, min_open=True),
@@ -163,8 +153,8 @@ _FILE: dict[str, Any] = {
     help="Instead of a page: pick the most accurate setting whose ticks take at most N"
     " µs, 99th percentile, and write it as a scene file.",
 )
-@click.option("--write", **_FILE, help="That file.  [default: SCENE-N-us.yaml]")
-@json_option
+@file_option("--write", help="That file.  [default: SCENE-N-us.yaml]")
+@json_option()
 def accuracy(
     scene: str,
     quick: bool,
@@ -242,7 +232,7 @@ def accuracy(
 
 @contextmanager
 def _errors_in_a_line() -> Iterator[None]:
-    """Turns expected failures of the measurement into messages."""
+    """Converts expected failures of the measurement to messages."""
     try:
         yield
     except (ValueError, RunError, StudyError) as error:
@@ -260,7 +250,7 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
 
 
 def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
-    """Raises HapticsError where the one requested setting could not be measured."""
+    """Raises HapticsError if the requested setting could not be measured."""
     for row in study.rows:
         if row.setting in settings and row.failure_reason:
             raise HapticsError(f"--only: {name_setting(row)}: {row.failure_reason}")
@@ -281,7 +271,7 @@ def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) 
 def _show_choice(
     choice: BudgetChoice, scene: Scene, name: str, file: Path, json_file: str | None
 ) -> None:
-    """Prints the outcome for a budget, and writes the scene that holds it."""
+    """Prints the outcome for a budget, and writes the scene that meets it."""
     if choice.holds:
         write_scene(choice.scene, file, describe_file(choice, scene, name))
     if json_file is not None:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.table import Table as RichTable
 
-from drake_haptics.cli import lessons
-from drake_haptics.cli.console import make_console, progress_bar
-from drake_haptics.cli.lessons import CommandWithExamples
+from drake_haptics.cli.command_help import CommandWithExamples
+from drake_haptics.cli.console import make_console, progress_bar, show_table
 from drake_haptics.cli.options import json_option, meshes_option, write_json
 from drake_haptics.evaluation.benchmark.benchmark import (
     PARTS,
@@ -24,7 +22,7 @@ from drake_haptics.evaluation.benchmark.benchmark import (
 from drake_haptics.evaluation.benchmark.outside_library import load_library
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.BENCH)
+@click.command(cls=CommandWithExamples)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: about 40 seconds.")
 @meshes_option("Take the scenes' meshes from here where it has them")
@@ -35,7 +33,7 @@ from drake_haptics.evaluation.benchmark.outside_library import load_library
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="Measure your library too: a Python file with a subclass of OutsideLibrary.",
 )
-@json_option
+@json_option()
 def bench(
     parts: tuple[str, ...],
     quick: bool,
@@ -63,14 +61,7 @@ def bench(
 def _print(figures: BenchFigures) -> None:
     console = make_console()
     for table in make_tables(figures):
-        shown = RichTable(box=None, title=table.title, title_justify="left")
-        first, *others = table.header
-        shown.add_column(first, no_wrap=True)
-        for heading in others:
-            shown.add_column(heading, justify="right", overflow="fold")
-        for row in table.rows:
-            shown.add_row(*row)
-        console.print(shown)
+        console.print(show_table(table, folds=True))
         console.print(table.note, style="dim")
         console.print()
     console.print(machine_line(figures))

@@ -1,4 +1,4 @@
-"""Completion by the Tab key, and the command `drake-haptics completion` for it."""
+"""Completes words by the Tab key; `drake-haptics completion`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from pathlib import Path
 import click
 from click.shell_completion import CompletionItem, get_completion_class
 
-from drake_haptics.cli import lessons
-from drake_haptics.cli.lessons import CommandWithExamples
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.mesh.units import METERS_PER_UNIT
 
@@ -91,7 +90,7 @@ _HOW = {
 }
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.COMPLETION)
+@click.command(cls=CommandWithExamples)
 @click.argument("shell", type=click.Choice(list(_HOW)), required=False)
 def completion(shell: str | None) -> None:
     """Print a script that lets the Tab key complete commands, options and scenes.

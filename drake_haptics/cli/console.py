@@ -1,4 +1,4 @@
-"""Prints for a person or a pipe: text, the address of a page, a progress bar."""
+"""Prints text, tables and progress bars to a terminal or a pipe."""
 
 from __future__ import annotations
 
@@ -11,15 +11,18 @@ from urllib.parse import urlsplit
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table as RichTable
 
-# Width for a file or a pipe, so that `grep` and `less -S` find whole lines.
+from drake_haptics.report.page import Table
+
+# Width for a file or a pipe, so that `grep` and `less -S` see whole lines.
 _ANY_WIDTH = 400
 
 
 class _Terminal(Console):
-    """A terminal, which may be closed before everything is printed.
+    """A terminal that may be closed before everything is printed.
 
-    Files that are written after that are still written.
+    The program continues, so that its files are still written.
     """
 
     def print(self, *objects: Any, **options: Any) -> None:
@@ -31,10 +34,10 @@ class _Terminal(Console):
 
 
 class _Pipe(Console):
-    """A file or a pipe: lines of any length, without blanks at their ends."""
+    """A file or a pipe, with lines of any length and without trailing blanks."""
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Prints; tables too are no wider than what is in them."""
+        """Prints objects; tables are only as wide as their content."""
         with self.capture() as captured:
             super().print(*objects, **options)
         lines = captured.get().split("\n")
@@ -48,17 +51,31 @@ class _Pipe(Console):
 def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
     """Returns a console as wide as the terminal, or of any width without a terminal.
 
-    Colors are left out where the output is no terminal, or where the environment
-    has NO_COLOR.
+    Colors are left out if the output is not a terminal, or if NO_COLOR is set.
 
     Args:
         stderr: Whether to write to stderr instead of stdout.
-        markup: Whether `[bold]` and the like are markup in the printed text.
+        markup: Whether `[bold]` and similar text is markup.
     """
     console = _Terminal(highlight=False, markup=markup, stderr=stderr)
     if console.is_terminal:
         return console
     return _Pipe(highlight=False, markup=markup, stderr=stderr, width=_ANY_WIDTH)
+
+
+def show_table(table: Table, *, folds: bool = False) -> RichTable:
+    """Returns a table for the terminal, whose wide cells may be folded."""
+    shown = RichTable(box=None, title=table.title, title_justify="left")
+    for k, heading in enumerate(table.header):
+        shown.add_column(
+            heading,
+            justify="right" if k else "left",
+            no_wrap=not (k and folds),
+            overflow="fold" if k and folds else "ellipsis",
+        )
+    for row in table.rows:
+        shown.add_row(*row)
+    return shown
 
 
 def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
@@ -81,22 +98,22 @@ def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
     return lines
 
 
-# Rich stops the clock of a bar that was full once. Each part of the work fills it.
+# Rich stops the clock of a full bar, but each part of the work fills it.
 _ALMOST_FULL = 1.0 - 1e-6
 
-# Without a terminal a line is written this often, and none before.
+# Period of lines without a terminal, and time before the first one.
 _LINE_EVERY_S = 10.0
 
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[[str, float], None]]:
-    """Shows a bar on stderr while the context lasts, or lines if that is no terminal.
+    """Shows a bar on stderr within the context, or lines if it is not a terminal.
 
     Work of a few seconds writes no line. Longer work writes one when its next part
     begins, and one every ten seconds.
 
     Yields:
-        A function to call with the current work and the share that is done, in [0, 1].
+        A function to call with the current work and the share done, from 0 to 1.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
@@ -114,7 +131,7 @@ def progress_bar() -> Iterator[Callable[[str, float], None]]:
 
 
 class _Lines:
-    """Writes a line now and then."""
+    """Writes progress as lines."""
 
     def __init__(self, console: Console):
         self._console = console

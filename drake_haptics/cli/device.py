@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import click
 
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.live_line import ChangeLog
 from drake_haptics.cli.options import (
     FiniteRange,
@@ -27,7 +26,7 @@ from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.loop.drivers import make_simulated_driver
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.DEVICE)
+@click.command(cls=CommandWithExamples)
 @click.argument("scene", default="cup_spoon", shell_complete=complete_scene)
 @click.option(
     "--port",
@@ -66,7 +65,7 @@ from drake_haptics.loop.drivers import make_simulated_driver
     help="Stop after so many seconds.  [default: at Ctrl-C]",
 )
 @set_option
-@json_option
+@json_option()
 def device(
     scene: str,
     port: int,

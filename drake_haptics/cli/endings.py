@@ -1,4 +1,4 @@
-"""Ends a command well: exit codes, failures as messages, and requests to stop."""
+"""Defines how commands end: exit codes, messages of failures, and signals."""
 
 from __future__ import annotations
 
@@ -24,10 +24,9 @@ class ExitCode(IntEnum):
     """Exit codes of all commands.
 
     Attributes:
-        DONE: The command is done. `run`, `device` and `decompose --show` end this way
-            at Ctrl-C too.
-        UNUSABLE: Something given cannot be used, or the system refuses a file or a
-            port.
+        DONE: The command is done. Ctrl-C ends `run`, `device` and `decompose --show`
+            this way, too.
+        UNUSABLE: An input cannot be used, or the system refuses a file or a port.
         WRONG_CALL: There is no such command, option or value.
         NO: The command is done, and the answer is no: a run became unstable or ended
             with its device at fault, two logs differ, no setting holds the budget.
@@ -53,7 +52,7 @@ _REMEDIES = {
 }
 
 
-# Drake logs this for each additional page; the pages tell which one has the camera.
+# Drake logs this for each additional page; the pages show which one has the camera.
 _TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its camera pose"
 
 
@@ -64,7 +63,7 @@ class _Defect(click.ClickException):
 
 
 class _Interrupted(click.ClickException):
-    """A Ctrl-C, which is no error."""
+    """A Ctrl-C, which is not an error."""
 
     exit_code = ExitCode.INTERRUPTED
 
@@ -75,9 +74,9 @@ class _Interrupted(click.ClickException):
 
 @contextmanager
 def failures_in_words(debug: bool) -> Iterator[None]:
-    """Ends with one message where something fails, and a traceback if asked for.
+    """Ends with one message if something fails, and with a traceback if requested.
 
-    Python's warnings and what libraries log become a line each on stderr.
+    Python's warnings and log records of libraries become one line each on stderr.
 
     Raises:
         click.ClickException: Something failed; it has the message and the exit code.
@@ -86,7 +85,7 @@ def failures_in_words(debug: bool) -> Iterator[None]:
         try:
             yield
         except (click.exceptions.Exit, click.Abort, BrokenPipeError):
-            raise  # no failure, or the reader of our output has gone
+            raise  # not a failure, or the reader of our output has gone
         except click.UsageError as error:  # the call itself: there is nothing to trace
             if isinstance(error, click.NoSuchOption) and error.option_name == "--debug":
                 words = "--debug goes before the command: drake-haptics --debug ..."
@@ -101,9 +100,9 @@ def failures_in_words(debug: bool) -> Iterator[None]:
 
 
 def _describe(error: BaseException) -> click.ClickException:
-    """Returns an exception as the failure that the person at the keyboard sees."""
+    """Returns the failure that the user sees for an exception."""
     if isinstance(error, KeyboardInterrupt):
-        # Work that is kept says how to go on.
+        # Work that was stored says how to continue.
         return _Interrupted(str(error) or "Stopped.")
     if isinstance(error, HapticsError):
         return click.ClickException(str(error))
@@ -122,7 +121,7 @@ def _describe(error: BaseException) -> click.ClickException:
 
 
 def _describe_refusal(error: OSError) -> str:
-    """Returns what the system refuses, and what may help."""
+    """Returns what the system refused, and a remedy if there is one."""
     words = str(error.strerror)
     if error.filename is not None:
         words = f"{error.filename}: {words}"
@@ -135,7 +134,7 @@ def _is_ours(module: str | None) -> bool:
 
 
 def _describe_defect(error: BaseException) -> str:
-    """Returns that it is not the user's fault, and what to report."""
+    """Returns a message that asks the user to report a defect."""
     home = Path(__file__).parents[1]
     places = [
         f" ({Path(frame.filename).relative_to(home)}:{frame.lineno})"
@@ -152,11 +151,10 @@ def _describe_defect(error: BaseException) -> str:
 
 @contextmanager
 def naming(given: str, kind: type[HapticsError] = HapticsError) -> Iterator[None]:
-    """Puts the option, or its value, before the library's message about it.
+    """Prefixes messages of the library with the option or its value.
 
     Raises:
-        HapticsError: The library raised one of this kind, whose message does not name
-            what was given.
+        HapticsError: The library raised one of this kind.
     """
     try:
         yield
@@ -166,7 +164,7 @@ def naming(given: str, kind: type[HapticsError] = HapticsError) -> Iterator[None
 
 @contextmanager
 def _warnings_in_lines(debug: bool) -> Iterator[None]:
-    """Shows Python's warnings as one line each, unless they are to be traced."""
+    """Shows Python's warnings as one line each, unless debugging."""
     before = warnings.showwarning
 
     def show(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -197,7 +195,7 @@ class _LineHandler(logging.Handler):
 
 @contextmanager
 def _log_in_lines() -> Iterator[None]:
-    """Shows what libraries, Drake among them, log from warnings on."""
+    """Shows warnings and errors that libraries, including Drake, log."""
     handler = _LineHandler()
     logging.root.addHandler(handler)
     try:
@@ -211,9 +209,9 @@ def warn(words: str) -> None:
     click.secho(f"Warning: {' '.join(words.split())}", fg="yellow", err=True)
 
 
-# Signals that end a program from a keyboard, a script or a service, or its terminal.
+# Signals by which a keyboard, script, service or terminal ends a program.
 _NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-# Ctrl-C ten times in a row is one request, whose report must not be lost.
+# Pressing Ctrl-C repeatedly is one request, whose report must not be lost.
 _REPEATED_S = 2.0
 
 
@@ -223,16 +221,17 @@ def lasting_interrupt(
 ) -> Iterator[Callable[[], None]]:
     """Keeps Ctrl-C, SIGTERM and SIGHUP pending until the loop has ended for them.
 
-    A `KeyboardInterrupt` is raised wherever the interpreter is just then. Where that is
-    in Python code that C++ has called, or in a destructor, it may be dropped, and a
-    device would go on with force. Further signals within two seconds count as the same
-    one; later ones are raised again, in case the program hangs.
+    A `KeyboardInterrupt` is raised wherever the interpreter happens to be. In Python
+    code that C++ has called, or in a destructor, it may be lost, and a device would
+    continue to show force. Further signals within two seconds count as the same one;
+    later ones are raised again, in case the program hangs.
 
-    Signals that are ignored, as in a script's background or under `nohup`, still are.
-    Only the main thread may use it.
+    Signals that are ignored, as under `nohup`, remain ignored. Only the main thread may
+    use it.
 
     Yields:
-        A function that a loop calls now and then: raises `KeyboardInterrupt` if asked.
+        A function for a loop to call regularly, which raises `KeyboardInterrupt` if
+        requested.
     """
     asked_s: float | None = None
 

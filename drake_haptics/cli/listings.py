@@ -7,9 +7,8 @@ from dataclasses import asdict
 import click
 from rich.table import Table
 
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import json_option, write_json
 from drake_haptics.scene.device_preset import (
     DevicePreset,
@@ -20,7 +19,7 @@ from drake_haptics.scene.library import list_scenes
 from drake_haptics.scene.scene_file import load_scene
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.SCENES)
+@click.command(cls=CommandWithExamples)
 def scenes() -> None:
     """List the scenes that are included."""
     table = Table(box=None, header_style="bold", pad_edge=False)
@@ -33,12 +32,12 @@ def scenes() -> None:
     console.print("\nTo run one: drake-haptics run SCENE", style="dim")
 
 
-# What the table needs.
+# Width of the table of devices.
 _WIDTH = 80
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.DEVICES)
-@json_option
+@click.command(cls=CommandWithExamples)
+@json_option()
 def devices(json_file: str | None) -> None:
     """List the devices whose limits are included.
 
@@ -55,7 +54,7 @@ def devices(json_file: str | None) -> None:
 
 
 def _to_dict(preset: DevicePreset) -> dict[str, object]:
-    """Returns the preset's figures, its model as yes or no."""
+    """Returns the preset's values, with its model as yes or no."""
     figures = asdict(preset)
     del figures["model"]
     return figures | {"has_twin": preset.has_model}
@@ -78,7 +77,7 @@ def _print_devices(presets: dict[str, DevicePreset]) -> None:
             "yes" if preset.has_model else "no",
         )
     console = make_console()
-    # A terminal that is narrower breaks the rows; cut, they would lose figures.
+    # A narrower terminal wraps the rows; truncated, they would lose numbers.
     console.width = max(_WIDTH, console.width)
     console.print(table)
     console.print("\naxes: how many of the handle's six have motors", style="dim")

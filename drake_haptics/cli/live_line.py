@@ -1,4 +1,4 @@
-"""Shows what a loop does: in a line of the terminal, or as a log of changes."""
+"""Shows the state of a loop in a line of the terminal, or as a log of changes."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from rich.text import Text
 
 _PERIOD_S = 0.2
 _BETWEEN = " · "
-# A terminal or reader that takes nothing for this long is not waited for.
+# Longest time to wait for a terminal or reader at the end.
 _END_S = 0.5
 _Writer = TypeVar("_Writer", bound="_LineWriter")
 
 
 class _LineWriter(ABC):
-    """Writes lines for a loop, and never keeps it waiting.
+    """Writes lines for a loop without ever blocking it.
 
-    Only a thread of its own writes: at Ctrl-S, or where the connection to the terminal
-    hangs, a write does not return, and a loop that hangs leaves its last force on.
+    A separate thread writes. After Ctrl-S, or if the connection to the terminal hangs,
+    a write does not return, and a loop that hangs would leave its last force on.
 
     Args:
         name: Name of the thread.
-        writes: Whether it writes at all.
+        writes: Whether to write at all.
     """
 
     def __init__(self, name: str, writes: bool):
@@ -42,14 +42,14 @@ class _LineWriter(ABC):
     def __enter__(self: _Writer) -> _Writer:
         """Starts to write."""
         if self._writes:
-            # Drake ends the process if a Meshcat dies in another thread than its own.
-            # One that is dead already must not meet its end by chance in the thread.
+            # Drake ends the process if a Meshcat is deleted in another thread than its
+            # own, so that none may be left for garbage collection in this thread.
             gc.collect()
             self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Writes what is left, if the reader takes it."""
+        """Writes the remaining lines, if the reader takes them."""
         if self._writes:
             self._lines.put(None)
             self._thread.join(_END_S)
@@ -60,16 +60,16 @@ class _LineWriter(ABC):
 
 
 class LiveLine(_LineWriter):
-    """Shows what a loop does in a line of the terminal.
+    """Shows the state of a loop in a line of the terminal.
 
-    As long as the terminal does not take a line, no other is written. Where the output
-    is not a terminal nothing is written.
+    No line is made while the terminal has not taken the last one. If the output is not
+    a terminal, nothing is written.
 
     Args:
         console: Console to write to.
         make_line: Function of the time since the last line, s, that returns the next
-            one, in parts between " · ", the most important first: the last ones are
-            left out where a terminal is narrow.
+            one, in parts between " · ", most important first: a narrow terminal leaves
+            out the last ones.
         clock: Reads the time, s.
     """
 
@@ -86,7 +86,7 @@ class LiveLine(_LineWriter):
         self._last_s = clock()
 
     def update(self) -> None:
-        """Makes a new line, if it is time; otherwise a call costs well under 1 µs."""
+        """Makes a new line, if it is time; otherwise it takes well under 1 µs."""
         now_s = self._clock()
         if not self._writes or now_s < self._last_s + _PERIOD_S:
             return
@@ -97,7 +97,7 @@ class LiveLine(_LineWriter):
 
     def _write(self) -> None:
         """Writes lines until the end; runs in the thread."""
-        # The loop goes on without a terminal that has gone.
+        # The loop continues without a terminal that has gone.
         with suppress(OSError):
             self._live.start()
             for line in iter(self._lines.get, None):
@@ -122,7 +122,7 @@ class ChangeLog(_LineWriter):
 
     Args:
         console: Output; nothing is written if it is a terminal.
-        describe: Called at each tick; returns the words to note when they change.
+        describe: Function that is called at each tick and returns the text to log.
         clock: Reads the time, s.
     """
 
@@ -140,7 +140,7 @@ class ChangeLog(_LineWriter):
         self._last = ""
 
     def update(self) -> None:
-        """Notes what has changed since the last call, if anything has."""
+        """Logs the text if it has changed since the last call."""
         if not self._writes:
             return
         words = self._describe()
@@ -150,7 +150,7 @@ class ChangeLog(_LineWriter):
 
     def _write(self) -> None:
         """Writes lines until the end; runs in the thread."""
-        # The loop goes on without its reader; rich would end the program.
+        # The loop continues without its reader; rich would end the program.
         with suppress(OSError, SystemExit):
             for line in iter(self._lines.get, None):
                 self._console.print(line, soft_wrap=True)

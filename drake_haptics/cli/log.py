@@ -10,11 +10,10 @@ import click
 from rich.markup import escape
 from rich.table import Table
 
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples, LazyGroup
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.endings import ExitCode
-from drake_haptics.cli.lessons import CommandWithExamples, LazyGroup, Lesson
 from drake_haptics.cli.options import (
     file_option,
     json_option,
@@ -32,42 +31,12 @@ from drake_haptics.tick_log.log_format import find_changed_meshes
 from drake_haptics.tick_log.log_summary import LogSummary, summarize_log
 from drake_haptics.tick_log.tick_log import TickLogReader, read_tick_log
 
-_COMMANDS = {
-    "Commands": {
-        "info": (
-            __name__,
-            "List the contents and the gaps of a log.",
-        ),
-        "replay": (
-            __name__,
-            "Move the handle as recorded, in the same scene or another.",
-        ),
-        "diff": (__name__, "Compare two runs, tick by tick."),
-        "csv": (__name__, "Write a log as a table."),
-    }
-}
-
-_LESSON = Lesson(
-    examples=[
-        (
-            "Note every tick of a run",
-            "drake-haptics run cup_spoon --headless --duration 2 --log run.tick",
-        ),
-        ("What is in it", "drake-haptics log info run.tick"),
-        (
-            "The same motion on a softer cup",
-            "drake-haptics log replay run.tick --set contact.stiffness_N_per_m=4000",
-        ),
-    ],
-    further="docs/record-replay.md says what a log holds and how exact a replay is.",
-)
-
-
-# Two scenes may differ in more settings than this: --json has them all.
+_COMMANDS = {"Commands": dict.fromkeys(("info", "replay", "diff", "csv"), __name__)}
+# Largest number of differing settings that are printed; --json has all.
 _MOST_SETTINGS = 6
 
 
-@click.group(cls=LazyGroup, commands_by_heading=_COMMANDS, lesson=_LESSON)
+@click.group(cls=LazyGroup, modules=_COMMANDS)
 def log() -> None:
     """Inspect, replay, compare and export logs that `run --log FILE` recorded."""
 
@@ -79,7 +48,7 @@ def warn_of_gaps(file: Path, sentences: Iterable[str]) -> None:
 
 
 def print_diff(diff: LogDiff, period_s: float) -> None:
-    """Writes a comparison as a table, or that there is nothing to compare."""
+    """Prints a comparison as a table, or that all ticks are equal."""
     console = make_console()
     for name, ticks in [("first", diff.only_a), ("second", diff.only_b)]:
         if ticks:
@@ -123,9 +92,9 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
         console.print(f"Equal to the last bit: {', '.join(equal)}", style="dim")
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.LOG_INFO)
+@click.command(cls=CommandWithExamples)
 @click.argument("file", type=click.Path(path_type=Path))
-@json_option
+@json_option()
 def info(file: Path, json_file: str | None) -> None:
     """List the contents and the gaps of a log.
 
@@ -175,7 +144,7 @@ def _print_summary(file: Path, summary: LogSummary) -> None:
         console.print("complete", style="dim")
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.LOG_REPLAY)
+@click.command(cls=CommandWithExamples)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("scene", required=False, shell_complete=complete_scene)
 @set_option
@@ -186,7 +155,7 @@ def _print_summary(file: Path, summary: LogSummary) -> None:
     metavar="OUT",
     help="Keep the log of the replay.",
 )
-@json_option
+@json_option()
 def replay(
     file: Path,
     scene: str | None,
@@ -200,7 +169,7 @@ def replay(
     a file). Then says how the replay differs from the record: in the same scene not
     at all, to the last bit.
     """
-    # Only now what loads Drake: help and the other commands do without.
+    # Imported here, because help and the other commands do not need Drake.
     from drake_haptics.scene.library import find_scene
     from drake_haptics.scene.scene_file import load_scene
     from drake_haptics.simulation.replay_log import load_log_scene
@@ -239,14 +208,14 @@ def replay(
         click.echo(f"Wrote {out}.")
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.LOG_DIFF)
+@click.command(cls=CommandWithExamples)
 @click.argument("a", type=click.Path(path_type=Path))
 @click.argument("b", type=click.Path(path_type=Path))
 @file_option(
     "--plot",
     help="Draw forces, depths and the distance of the tools, as PNG, SVG or PDF.",
 )
-@json_option
+@json_option()
 @click.pass_context
 def diff(
     ctx: click.Context, a: Path, b: Path, plot: Path | None, json_file: str | None
@@ -267,7 +236,7 @@ def diff(
 
         try:
             plot_diff(*logs, names=(a.name, b.name), path=plot)
-        except ValueError as error:  # The ending stands for no kind of picture.
+        except ValueError as error:  # The suffix is not that of a picture.
             raise HapticsError(f"--plot: {error}") from error
     if json_file is not None:
         write_json(difference.to_dict(), json_file)
@@ -279,7 +248,7 @@ def diff(
         ctx.exit(ExitCode.NO)
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.LOG_CSV)
+@click.command(cls=CommandWithExamples)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--out",

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import signal
+from functools import partial
+from pathlib import Path
 
 import click
 
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.console import describe_page, make_console, progress_bar
 from drake_haptics.cli.endings import naming
-from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
+    file_option,
     json_option,
     max_triangles_option,
     read_mesh,
-    require_folder,
     unit_options,
     write_json,
 )
@@ -28,18 +29,18 @@ from drake_haptics.geometry.decomposition.decompose import (
     Method,
 )
 from drake_haptics.geometry.decomposition.decompose import decompose as decompose_mesh
-from drake_haptics.geometry.mesh.mesh import Mesh, MeshError
+from drake_haptics.geometry.mesh.mesh import MeshError
 from drake_haptics.geometry.mesh.report import Severity, length
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.CHECK)
+@click.command(cls=CommandWithExamples)
 @click.argument("mesh", type=click.Path())
 @unit_options
 @max_triangles_option
 @click.option(
     "--strict", is_flag=True, help="Fail if the mesh has a defect, repairable or not."
 )
-@json_option
+@json_option()
 def check(
     mesh: str,
     unit: str | None,
@@ -58,7 +59,7 @@ def check(
         raise MeshError(report.refusal)
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.DECOMPOSE)
+@click.command(cls=CommandWithExamples)
 @click.argument("mesh", type=click.Path())
 @unit_options
 @max_triangles_option
@@ -77,25 +78,16 @@ def check(
     metavar="METERS",
     help="Largest distance of merged pieces from the mesh.",
 )
-@click.option(
-    "--out",
-    type=click.Path(dir_okay=False),
-    metavar="FILE",
-    callback=require_folder,
-    help="Write mesh and pieces to an .npz file.",
-)
+@file_option("--out", help="Write mesh and pieces to an .npz file.")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep results on disk.")
 @click.option(
     "--show", is_flag=True, help="Show the pieces in the browser until Ctrl-C."
 )
-@click.option(
+@file_option(
     "--html",
-    type=click.Path(dir_okay=False),
-    metavar="FILE",
-    callback=require_folder,
     help="Write the view of the pieces as a web page that needs no other file.",
 )
-@json_option
+@json_option()
 def decompose(
     mesh: str,
     unit: str | None,
@@ -103,17 +95,24 @@ def decompose(
     max_triangles: int | None,
     method: Method,
     error_m: float | None,
-    out: str | None,
+    out: Path | None,
     no_cache: bool,
     show: bool,
-    html: str | None,
+    html: Path | None,
     json_file: str | None,
 ) -> None:
     """Cut the surface of a mesh into convex pieces, and report them."""
     with naming("--error"):
         check_error(method, error_m)
     taken_in = read_mesh(mesh, unit, scale, max_triangles)
-    result = _with_progress(taken_in, method, error_m, cache=not no_cache)
+    with progress_bar() as bar:
+        result = decompose_mesh(
+            taken_in,
+            method,
+            error_m=error_m,
+            progress=partial(bar, "cutting into convex pieces"),
+            cache=not no_cache,
+        )
     if out is not None:
         result.save(out)
     if json_file is not None:
@@ -123,19 +122,6 @@ def decompose(
         _print_report(result)
     if show or html is not None:
         _view(result, show, html)
-
-
-def _with_progress(
-    mesh: Mesh, method: Method, error_m: float | None, cache: bool
-) -> Decomposition:
-    with progress_bar() as show:
-        return decompose_mesh(
-            mesh,
-            method,
-            error_m=error_m,
-            progress=lambda share: show("cutting into convex pieces", share),
-            cache=cache,
-        )
 
 
 def _print_report(result: Decomposition) -> None:
@@ -157,7 +143,7 @@ def _print_report(result: Decomposition) -> None:
         )
 
 
-def _view(result: Decomposition, show: bool, html: str | None) -> None:
+def _view(result: Decomposition, show: bool, html: Path | None) -> None:
     from drake_haptics.geometry.decomposition.viewer import (
         DecompositionViewer,  # starts a web server
     )

@@ -1,4 +1,4 @@
-"""Options that several commands share: meshes, scenes, numbers, and files to write."""
+"""Options that several commands share."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class FiniteRange(click.FloatRange):
-    """A number in a range, and neither `nan` nor `inf`."""
+    """A number in a range, which is neither `nan` nor `inf`."""
 
     name = "number"  # in messages
 
@@ -57,7 +57,7 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --unit.
 
     Args:
-        what: Name of the quantity in that unit, for --help.
+        what: Name of what is in that unit, for --help.
     """
     return click.option(
         "--unit",
@@ -80,13 +80,13 @@ def max_triangles_option(function: _Function) -> _Function:
 def read_mesh(
     file: str, unit: str | None, scale: float | None, max_triangles: int | None
 ) -> Mesh:
-    """Reads the mesh that a command works on."""
+    """Reads the mesh of a command."""
     mesh = load_mesh(file, unit=unit, scale=scale)
     return mesh if max_triangles is None else decimate(mesh, max_triangles)
 
 
 def meshes_option(what: str) -> Callable[[_Function], _Function]:
-    """Adds --meshes FOLDER, of real meshes by their names.
+    """Adds --meshes FOLDER.
 
     Args:
         what: Sentence about what is done with the meshes, for --help.
@@ -99,7 +99,9 @@ def meshes_option(what: str) -> Callable[[_Function], _Function]:
     )
 
 
-def json_option(function: _Function) -> _Function:
+def json_option(
+    words: str = "Also write the report as JSON; - writes it to stdout, alone.",
+) -> Callable[[_Function], _Function]:
     """Adds --json FILE, where - is stdout."""
     return click.option(
         "--json",
@@ -107,12 +109,12 @@ def json_option(function: _Function) -> _Function:
         type=click.Path(dir_okay=False, allow_dash=True),
         metavar="FILE",
         callback=require_folder,
-        help="Also write the report as JSON; - writes it to stdout, alone.",
-    )(function)
+        help=words,
+    )
 
 
 def file_option(name: str, **settings: Any) -> Callable[[_Function], _Function]:
-    """Makes an option that takes the path of a file to be written."""
+    """Adds an option that takes the path of a file to be written."""
     return click.option(
         name,
         type=click.Path(dir_okay=False, path_type=Path),
@@ -125,10 +127,10 @@ def file_option(name: str, **settings: Any) -> Callable[[_Function], _Function]:
 def require_folder(
     _: click.Context, option: click.Parameter, file: str | Path | None
 ) -> str | Path | None:
-    """Returns the file of an option, checked before its result is computed.
+    """Returns the file of an option, after checking that it can be written.
 
     Raises:
-        HapticsError: The file cannot be written, see `require_writable`.
+        HapticsError: The file cannot be written; see `require_writable`.
     """
     if file is not None and str(file) != "-":
         require_writable(Path(file), option.opts[0])
@@ -139,7 +141,7 @@ def require_writable(path: Path, option: str) -> None:
     """Checks that a file can be written.
 
     Raises:
-        HapticsError: There is no such folder, or nothing can be written there.
+        HapticsError: The folder does not exist, or the file cannot be written.
     """
     folder = path.absolute().parent
     if not folder.is_dir():
@@ -154,13 +156,13 @@ def require_writable(path: Path, option: str) -> None:
 def _try_to_open(path: Path) -> str:
     """Returns why a file cannot be opened for writing, or "".
 
-    The file stays as it is. It is really opened: permissions do not tell of a folder
-    in which nothing can be made, nor of a name that is too long.
+    The file is not changed. It is really opened, because permissions do not reveal a
+    folder in which no file can be made, or a name that is too long.
     """
     try:
         target = Path(os.path.realpath(path))
         is_new = not target.exists()
-        # A pipe, or a device, may be waiting for its reader.
+        # Opening a pipe or a device may wait for its reader.
         if not is_new and not target.is_file():
             return "" if os.access(target, os.W_OK) else os.strerror(errno.EACCES)
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT, 0o666))
@@ -183,7 +185,7 @@ def write_json(data: dict[str, Any], file: str) -> None:
         raise OSError(error.errno, error.strerror, file) from error
 
 
-# A scale that the library asks for, as an argument or a key of a scene.
+# A scale in a message of the library, as an argument or a key of a scene.
 _SCALE_ARGUMENT = re.compile(r"(tool|environment)_scale=([\d.e-]+)")
 _SCALE_KEY = re.compile(r"(tool|environment)(?:\[0\])?\.scale: ([\d.e-]+)")
 
@@ -207,7 +209,7 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
 
     Raises:
         SceneError: There is no such scene, or it cannot be used.
-        HapticsError: A setting is not possible, see `set_values`.
+        HapticsError: A setting is invalid; see `set_values`.
     """
     from drake_haptics.scene.library import find_scene
     from drake_haptics.scene.scene_file import load_scene
@@ -219,7 +221,7 @@ def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
     """Returns a scene with the changes of --set; the same one if there are none.
 
     Raises:
-        HapticsError: A setting names no key, or has an impossible value.
+        HapticsError: A setting has an unknown key or an invalid value.
     """
     from drake_haptics.scene.settings import change_scene
 
@@ -232,13 +234,13 @@ def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
 
 
 def write_call(command: str, scene: str, settings: Sequence[str]) -> str:
-    """Returns the words that give another command the same scene, for a shell."""
+    """Returns the command line that gives a command the same scene."""
     pairs = [word for setting in settings for word in ("--set", setting)]
     return shlex.join(["drake-haptics", command, scene, *pairs])
 
 
 def name_scale_options(words: str) -> str:
-    """Returns words of the library with the options of the scales that they ask for."""
+    """Adds the options that set a scale to a message that names it."""
     words = _SCALE_ARGUMENT.sub(r"--\1-scale \2", words)
     return _SCALE_KEY.sub(
         r"\g<0> (with --tool and --environment: --\1-scale \2)", words

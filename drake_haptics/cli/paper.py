@@ -8,11 +8,9 @@ from typing import cast
 import click
 from rich.console import Console
 from rich.measure import Measurement
-from rich.table import Table as RichTable
 
-from drake_haptics.cli import lessons
-from drake_haptics.cli.console import make_console, progress_bar
-from drake_haptics.cli.lessons import CommandWithExamples
+from drake_haptics.cli.command_help import CommandWithExamples
+from drake_haptics.cli.console import make_console, progress_bar, show_table
 from drake_haptics.cli.options import (
     file_option,
     json_option,
@@ -46,7 +44,7 @@ _STYLES = {
 _ANY_WIDTH = 1000
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.PAPER)
+@click.command(cls=CommandWithExamples)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: about 20 seconds.")
 @meshes_option("Measure these meshes too, as many as there are")
@@ -56,7 +54,7 @@ _ANY_WIDTH = 1000
     show_default=True,
     help="The page; its pictures are written beside it.",
 )
-@json_option
+@json_option()
 def paper(
     parts: tuple[str, ...],
     quick: bool,
@@ -109,13 +107,7 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
 
 def _print_table(console: Console, table: Table) -> None:
     """Prints a table, if the terminal is wide enough; wider ones are on the page."""
-    shown = RichTable(box=None, title=table.title, title_justify="left")
-    first, *others = table.header
-    shown.add_column(first, no_wrap=True)
-    for heading in others:
-        shown.add_column(heading, justify="right", no_wrap=True)
-    for row in table.rows:
-        shown.add_row(*row)
+    shown = show_table(table)
     options = console.options.update(max_width=_ANY_WIDTH)
     if Measurement.get(console, options, shown).maximum <= console.width:
         console.print(shown)

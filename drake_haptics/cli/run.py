@@ -7,13 +7,12 @@ from pathlib import Path
 
 import click
 
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_address, complete_file, complete_scene
-from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
     file_option,
-    require_folder,
+    json_option,
     set_option,
     unit_option,
 )
@@ -23,7 +22,7 @@ from drake_haptics.geometry.mesh.units import meters_per_unit
 _EXPLAINED_S = 2.0
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.RUN)
+@click.command(cls=CommandWithExamples)
 @click.argument("scene", required=False, shell_complete=complete_scene)
 @click.option(
     "--tool",
@@ -90,14 +89,7 @@ _EXPLAINED_S = 2.0
     help="At the end write the scene, with what --set and the page have changed, as"
     " a scene file to go on from.",
 )
-@click.option(
-    "--json",
-    "json_file",
-    type=click.Path(dir_okay=False, allow_dash=True),
-    metavar="FILE",
-    callback=require_folder,
-    help="Write the figures as JSON; - writes them to stdout, alone.",
-)
+@json_option("Write the figures as JSON; - writes them to stdout, alone.")
 @click.option("--pieces", is_flag=True, help="Color the convex pieces.")
 @click.option(
     "--port",
@@ -141,13 +133,13 @@ def run(
     ):
         raise click.UsageError("give either SCENE or --tool and --environment")
     if write_scene is not None and _is_same(scene, write_scene):
-        # Its comments would be gone.
+        # The file would lose its comments.
         raise HapticsError(
             f"--write-scene: {write_scene} is the scene that runs; give another file"
         )
     if explain:
         headless, duration = True, duration or _EXPLAINED_S
-    # Only now what takes a second to load: help and Tab do without.
+    # Imported here, because it takes a second, which help and Tab must not take.
     from drake_haptics.cli.run_scene import choose_scene, run_scene
 
     run_scene(
@@ -173,7 +165,7 @@ def run(
 
 
 def _is_same(scene: str | None, file: Path) -> bool:
-    """Returns whether a scene is the user's own file, and this one."""
+    """Returns whether a scene is given as this file."""
     return (
         scene is not None
         and file.exists()

@@ -1,4 +1,4 @@
-"""Runs a scene, from its name to the figures of its run."""
+"""Runs a scene and reports its figures."""
 
 from __future__ import annotations
 
@@ -55,14 +55,6 @@ def make_parts_table(parts: Sequence[Part]) -> Table:
     return table
 
 
-def describe_skin(speed_m_per_s: float) -> str:
-    """Says above which speed a step skips the skin of contact."""
-    return (
-        f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"
-        " contact begins as deep as that step has taken it."
-    )
-
-
 _MESH_OPTIONS = {
     "tool.mesh": "--tool",
     "tool.scale": "--tool-scale",
@@ -82,7 +74,7 @@ def choose_scene(
     """Returns the scene that the arguments of `run` name, and a name for it.
 
     Raises:
-        HapticsError: There is no such scene, or --set cannot change it so.
+        HapticsError: There is no such scene, or a setting is invalid.
     """
     if scene is not None:
         return load_set_scene(scene, settings), Path(scene).stem
@@ -131,7 +123,7 @@ def run_scene(
     pieces: bool,
     port: int | None,
 ) -> None:
-    """Runs a scene as the options of `run` say, and prints what came of it.
+    """Runs a scene with the options of `run`, and prints the results.
 
     Raises:
         HapticsError: Two options name one file.
@@ -157,7 +149,7 @@ def run_scene(
             listener = open_page_port(port)
         page = PageOptions(listener, name, locked, views)
     meshcat = None if headless and record is None else start_meshcat()
-    # Also while the report is written: a second Ctrl-C must not lose it.
+    # Includes the report, which a second Ctrl-C must not lose.
     with lasting_interrupt() as check_interrupt:
         session = run_session(
             console,
@@ -181,7 +173,11 @@ def run_scene(
             console.print(make_parts_table(session.parts))
             speed = session.figures["skin_speed_m_per_s"]
             if speed is not None:
-                console.print(describe_skin(speed), soft_wrap=True, markup=False)
+                words = (
+                    f"Above {speed:g} m/s the tool crosses contact.tolerance_m in one"
+                    " step: contact begins as deep as that step has taken it."
+                )
+                console.print(words, soft_wrap=True, markup=False)
             relief = suggest_speedup(session.parts, session.scene)
             if relief is not None:
                 console.print(relief, soft_wrap=True, markup=False)
@@ -198,20 +194,20 @@ def run_scene(
         if json_file is not None:
             write_json(session.figures, json_file)
     if session.error is not None:
-        raise _UnstableError(str(session.error)) from session.error
+        raise _BadEndError(str(session.error)) from session.error
     if (fault := session.figures.get("device", {}).get("fault", "NONE")) != "NONE":
         driver = " is its driver still running?" if fault == "STALE" else ""
-        raise _FaultError(
+        raise _BadEndError(
             f"the run ended with its device at fault ({describe_fault(fault)}):{driver}"
             " docs/connect-a-device.md says what each fault means"
         )
 
 
 def _explain_lock(files: dict[str, object]) -> str:
-    """Returns why nothing may be changed on the page of a run; else "".
+    """Returns why nothing may be changed on the page of a run; empty if it may.
 
     Args:
-        files: Files that record the run as one whole, by option.
+        files: Files that record the whole run, by option.
     """
     options = " and ".join(option for option, file in files.items() if file)
     if not options:
@@ -227,7 +223,7 @@ def _prepare(
     pieces: bool,
     record: Path | None,
 ) -> None:
-    """Prepares the view and prints where it is shown."""
+    """Prepares the view and prints its address."""
     if meshcat is not None:
         configure_camera(meshcat, haptic)
     visualizer = haptic.visualizer
@@ -260,13 +256,7 @@ def _write_recording(
     )
 
 
-class _FaultError(click.ClickException):
-    """A run whose device showed no force at the end: scripts can tell."""
-
-    exit_code = ExitCode.NO
-
-
-class _UnstableError(click.ClickException):
-    """A run that diverged: a status of its own, so that scripts can tell."""
+class _BadEndError(click.ClickException):
+    """A run that diverged, or whose device was at fault at the end."""
 
     exit_code = ExitCode.NO

@@ -1,4 +1,4 @@
-"""Builds a scene and runs it, from opening its device to the last tick."""
+"""Opens the device of a scene, builds the scene and runs it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from drake_haptics.cli.live_line import ChangeLog
 from drake_haptics.cli.options import name_scale_options
 from drake_haptics.cli.status_line import StatusLine, describe_held
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.cockpit.holding import (
+from drake_haptics.cockpit.handle_holder import (
     ForceOnRequest,
     SoftStartDevice,
     take_device,
@@ -44,21 +44,21 @@ from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
-# Enough for what a person may have typed at once.
+# Enough for what a person may have typed.
 _BUFFER_BYTES = 4096
 
 
 def is_enter_pressed() -> bool:
     """Returns whether a line has been typed since the last call.
 
-    It is always False where the input is not a terminal.
+    It is always False if the input is not a terminal.
     """
     if sys.stdin is None or not sys.stdin.isatty():
         return False
     keys = sys.stdin.fileno()
     pressed = False
     while select.select([keys], [], [], 0.0)[0]:
-        # Not by sys.stdin, which would keep further lines to itself.
+        # Not by sys.stdin, which would buffer further lines.
         if not os.read(keys, _BUFFER_BYTES):
             break  # the terminal has gone
         pressed = True
@@ -74,16 +74,16 @@ def build_scene(
 ) -> HapticDiagram:
     """Builds the diagram, with a bar while meshes are cut into pieces.
 
-    Warnings about the scene are then written to stderr, a line each.
+    Warnings about the scene are written to stderr afterwards, one line each.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
         haptic = _build(console, scene, meshcat, device, recorder)
-    # Only now, when the bar is gone.
+    # After the bar is gone.
     for warning in caught:
         warn(str(warning.message))
-    for question in check_plausibility(haptic):
-        warn(name_scale_options(question))
+    for sentence in check_plausibility(haptic):
+        warn(name_scale_options(sentence))
     return haptic
 
 
@@ -118,10 +118,10 @@ class Session:
     Attributes:
         haptic: The diagram that ran last.
         scene: The scene at the end, with the changes of the page.
-        figures: Figures as `RunStatistics.to_dict` returns them, `contact_law`,
-            `skin_speed_m_per_s` as of a `HapticDiagram` but None where it is infinite,
-            and of a device under `device` those of `DeviceWatch.to_dict`.
-        parts: Parts of a tick, if an explanation was asked for.
+        figures: Figures of `RunStatistics.to_dict`, with `contact_law`,
+            `skin_speed_m_per_s` (None if infinite), and for a device those of
+            `DeviceWatch.to_dict` as `device`.
+        parts: Parts of a tick, if an explanation was requested.
         error: Error that stopped the run, if one did.
     """
 
@@ -140,7 +140,7 @@ class PageOptions:
         listener: Socket that listens on its port.
         name: Name of the scene.
         locked: Reason why nothing may be changed on it; empty if changes are allowed.
-        views: The members of `PICTURE_VIEWS` that it shows at first.
+        views: Names of `PICTURE_VIEWS` that it shows at first.
     """
 
     listener: socket.socket
@@ -165,28 +165,30 @@ def run_session(
 ) -> Session:
     """Opens the device, builds the scene and runs it under a status line.
 
-    Warnings of the run are written to stderr when it is over, a line each: a terminal
-    that takes nothing must not keep a loop waiting.
+    Warnings of the run are written to stderr after it, one line each, because a blocked
+    terminal must not block the loop.
 
     Args:
         console: Console for bars and the status line.
         scene: The scene to run.
-        device: Address of the device that is held; None for the scene's simulated one.
+        device: Address of the device; None for the scene's simulated one.
         meshcat: Meshcat to draw in; None for no picture.
-        page: Page that shows and steers the run, in real time; None for none.
-        prepare: Called with the diagram before it runs, and the page's address.
-        duration_s: Simulated time, s; until Ctrl-C where None.
-        energy: Whether to book energy, where the device is simulated.
+        page: Page that shows and controls the run, in real time; None for no page.
+        prepare: Function that is called with the diagram before it runs, and the page's
+            address.
+        duration_s: Simulated time, s; None runs until Ctrl-C.
+        energy: Whether to account for energy, if the device is simulated.
         explained: Whether to explain the parts of a tick.
-        log: File for every tick, if wanted.
-        check_interrupt: Function of a `lasting_interrupt`; called after every tick.
+        log: File that records every tick; None for no log.
+        check_interrupt: Function of a `lasting_interrupt` that is called after every
+            tick.
     """
     timer = CallbackTimer() if explained else None
     with ExitStack() as stack:
         recorder = None
         if log is not None:
             recorder = stack.enter_context(TickRecorder(log, make_log_header(scene)))
-        # A device is closed whatever happens: at zero force.
+        # A device is closed at zero force, whatever happens.
         cockpit = backend = None
         if page is not None and meshcat is not None:
             cockpit = CockpitRun(
@@ -216,7 +218,7 @@ def run_session(
         stack.enter_context(status)
         onlookers = _Onlookers(check_interrupt, status, timer)
         if not console.is_terminal:
-            # What the status line shows elsewhere is not to wait for the report.
+            # Without a status line, changes are logged at once.
             changes = ChangeLog(
                 Console(stderr=True, force_terminal=False), onlookers.describe_gate
             )
@@ -239,7 +241,7 @@ def run_session(
                 )
             else:
                 onlookers.begin(haptic)
-                # Ctrl-C is how such a run ends; what ran is in the statistics.
+                # Ctrl-C ends such a run normally; the statistics are kept.
                 with suppress(KeyboardInterrupt):
                     run(
                         haptic,
@@ -266,7 +268,7 @@ def run_session(
 
 
 class _Onlookers:
-    """The monitors of every tick: the status line, the device's watch, the timer."""
+    """Observes every tick by the status line, the device's watch and the timer."""
 
     def __init__(
         self,
@@ -304,11 +306,11 @@ class _Onlookers:
             self.changes.update()
 
     def describe_gate(self) -> str:
-        """Returns whether the device that is held shows force; empty if none can."""
+        """Returns whether the device shows force; empty if it cannot."""
         if self._backend is None or not self._backend.shows_force:
             return ""
         return describe_held(self._backend, self._backend.read())
 
     def describe_device(self) -> dict[str, Any]:
-        """Returns `device` of the figures, of the device that was held last."""
+        """Returns the figures of the last device; empty without one."""
         return {} if self._watch is None else {"device": self._watch.to_dict()}

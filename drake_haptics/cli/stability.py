@@ -17,10 +17,9 @@ from drake_haptics.analysis.stability_page import (
     write_stability_page,
 )
 from drake_haptics.analysis.stiffness_limits import format_limit
-from drake_haptics.cli import lessons
+from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
-from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
     file_option,
@@ -35,7 +34,7 @@ from drake_haptics.report.page import check_page_path
 from drake_haptics.simulation.run import RunError
 
 
-@click.command(cls=CommandWithExamples, lesson=lessons.STABILITY)
+@click.command(cls=CommandWithExamples)
 @click.argument("scene", shell_complete=complete_scene)
 @click.option(
     "--at",
@@ -63,7 +62,7 @@ from drake_haptics.simulation.run import RunError
     help="Keep the map's results here, and continue from them.",
 )
 @set_option
-@json_option
+@json_option()
 def stability(
     scene: str,
     time_s: float | None,
@@ -94,7 +93,7 @@ def stability(
             )
     except (ValueError, RunError, StudyError) as error:
         words = str(error)
-        if words.startswith("time_s "):  # of the function, as which --at is given
+        if words.startswith("time_s "):  # the argument that --at sets
             words = f"--at {words.removeprefix('time_s ')}"
         raise HapticsError(words) from error
     write_stability_page(result, Path(scene).stem, path)

@@ -1,4 +1,4 @@
-"""Status lines and summaries of `drake-haptics run` and `drake-haptics device`."""
+"""Writes status lines and summaries of `run` and `device`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.cli.live_line import LiveLine
-from drake_haptics.cockpit.holding import SoftStartDevice
+from drake_haptics.cockpit.handle_holder import SoftStartDevice
 from drake_haptics.common.one_line import count
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import (
@@ -41,7 +41,7 @@ def describe_gate(
 
     Args:
         reading: The newest reading; None before the first.
-        remedy: Advice to the person about a fault.
+        remedy: Advice about a fault.
     """
     if reading is None:
         return "[dim]silent[/]"
@@ -52,7 +52,7 @@ def describe_gate(
 
 
 def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) -> str:
-    """Returns `describe_gate`, or that the force of a device has not set in yet."""
+    """Returns `describe_gate`, or that the device is not yet enabled."""
     waits = isinstance(backend, SoftStartDevice) and backend.waits
     if waits and reading is not None and reading.gate == GateState.IDLE:
         return (
@@ -68,12 +68,12 @@ def describe_fault(name: str) -> str:
 
 
 def describe_lateness(late_s: Sequence[float]) -> str:
-    """Returns p50, p99 and p99.9, given in s, in ms."""
+    """Returns p50, p99 and p99.9, given in s, as text in ms."""
     return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms"
 
 
 def describe_link(link: LinkStatus) -> str:
-    """Returns how much was lost on the way, and how late the backend's thread is."""
+    """Returns how many readings were lost, and how late the backend's thread is."""
     words = f"{link.lost} lost"
     if link.rejected:
         words += f", {link.rejected} refused"
@@ -85,7 +85,7 @@ def describe_link(link: LinkStatus) -> str:
 
 
 def describe_device(figures: Mapping[str, Any]) -> str:
-    """Returns `DeviceWatch.to_dict` in a line; of a link only if there is one."""
+    """Returns a line with the figures of `DeviceWatch.to_dict`."""
     faults = [f"{n} {describe_fault(name)}" for name, n in figures["faults"].items()]
     words = [
         f"showed at most {figures['max_force_N']:.2f} N,"
@@ -106,15 +106,14 @@ def describe_device(figures: Mapping[str, Any]) -> str:
     return "; ".join(words)
 
 
-# Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
-# millimeter.
+# Smaller energies are round-off: a nanojoule lifts a milligram by 0.1 mm.
 _ROUNDING_J = 1e-9
-# Number of the latest ticks whose lateness is in the line.
+# Number of latest ticks whose lateness is in the line.
 _LATEST = 1000
 
 
 class StatusLine(LiveLine):
-    """One line that says what a run does."""
+    """Shows the state of a run in one line."""
 
     def __init__(
         self,
@@ -131,7 +130,7 @@ class StatusLine(LiveLine):
         self._silence = SilenceMonitor()
 
     def follow(self, haptic: HapticDiagram) -> None:
-        """Describes from now on another diagram, with which the run goes on."""
+        """Describes another diagram from now on."""
         self._haptic = haptic
 
     def end_tick(self, context: Context) -> None:
@@ -142,7 +141,7 @@ class StatusLine(LiveLine):
     def _make_run_line(self, passed_s: float) -> str:
         assert self._context is not None
         time_s = self._context.get_time()
-        # A scene that begins again has gone nowhere yet.
+        # A scene that begins again is at an earlier time.
         run_s, self._before_s = max(0.0, time_s - self._before_s), time_s
         backend = self._haptic.backend
         force, depth, contacts = self._describe_touch(self._context)
@@ -156,7 +155,8 @@ class StatusLine(LiveLine):
                 force += " [dim](not shown)[/]"
             ticks = run_s / self._haptic.period_s
             late_s = self._pace.calc_lateness(_LATEST)
-            # What a person acts on comes first: a narrow terminal leaves out the rest.
+            # What matters most comes first, because a narrow terminal leaves out the
+            # rest.
             parts = [
                 self._describe_device(reading, passed_s),
                 force,
@@ -170,7 +170,7 @@ class StatusLine(LiveLine):
         return " · ".join([f"[bold]{time_s:7.1f} s[/]", *parts])
 
     def _describe_device(self, reading: DeviceReading | None, passed_s: float) -> str:
-        """Returns whether the device shows force, and whether its driver is there."""
+        """Returns whether the device shows force, and whether its driver is silent."""
         silent_s = self._silence.add(reading, passed_s)
         if silent_s < SILENT_S:
             return describe_held(self._haptic.backend, reading)
@@ -178,7 +178,7 @@ class StatusLine(LiveLine):
         return describe_gate(reading, silence)
 
     def _describe_relief(self, context: Context) -> list[str]:
-        """Returns what is left out because ticks take too long, if anything is."""
+        """Returns what is dropped because ticks take too long, if anything is."""
         shedding = self._haptic.loop.load_shedding
         if shedding is None:
             return []
@@ -261,20 +261,19 @@ def make_summary(figures: dict[str, Any]) -> Table:
 
 
 def _explain_near_force(figures: dict[str, Any]) -> str:
-    """Returns where a force without penetration comes from; empty if there is none."""
+    """Returns an explanation of force without penetration; empty without one."""
     distance_m = figures["least_distance_m"]
     is_constraint = figures.get("contact_law") == "constraint"
     key = "contact.skin_m" if is_constraint else "contact.tolerance_m"
     if distance_m is None or distance_m < 0.0 or figures["max_force_N"] == 0.0:
         return ""
     return (
-        f"; surfaces stayed {1e3 * distance_m:.3f} mm apart: force begins at {key};"
-        " for a tight fit set it below the clearance"
+        f"; the surfaces came within {1e3 * distance_m:.3f} mm: force begins at {key}"
     )
 
 
 def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:
-    """Returns what the hand spent, and whether a part made energy."""
+    """Returns the energy that the hand put in, and whether a part created energy."""
     hand = energy_J["device"]
     flow = f"hand put in {1e3 * hand['in']:.1f} mJ, got back {1e3 * hand['out']:.1f} mJ"
     created_J = {
@@ -292,24 +291,24 @@ def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:
         return f"{flow}; {made}, at most {most}; good: the loop as a whole made none"
     felt = f"{1e3 * felt_J:.2g} mJ, {_describe_share(felt_J, hand['in'])}"
     return (
-        f"{flow}; {made}; the loop as a whole made {felt}, and the hand may feel it as"
-        " vibration: lower contact or coupling gains if it does"
+        f"{flow}; {made}; the loop as a whole made {felt}; if the hand feels it as"
+        " vibration, lower contact or coupling gains"
     )
 
 
 def _describe_share(part_J: float, whole_J: float) -> str:
-    """Returns how much an energy is of what the hand put in."""
+    """Returns an energy as a share of what the hand put in."""
     if whole_J <= _ROUNDING_J:
         return "and the hand put in none"
     return f"{100.0 * part_J / whole_J:.2g} % of what the hand put in"
 
 
-# What ends a fault of a driver.
+# How a fault of a driver ends.
 DRIVER_REMEDY = "until the host disables it"
 
 
 class DriverStatusLine(LiveLine):
-    """The state of a driver in one line."""
+    """Shows the state of a driver in one line."""
 
     def __init__(
         self,

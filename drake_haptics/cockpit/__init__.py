@@ -1,5 +1,5 @@
-"""The cockpit: the page on which a run is seen, felt and changed.
+"""The cockpit: the page that shows a run and changes it.
 
-The page is served by a process of its own, `drake_haptics.web.process`, so that drawing
-and talking delay no tick. The loop's end of the way to it is a `PageLink`.
+A separate process, `drake_haptics.web.process`, serves the page, so that drawing and
+communication delay no tick. The loop reaches it by a `PageLink`.
 """

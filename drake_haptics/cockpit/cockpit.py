@@ -1,4 +1,4 @@
-"""The loop's side of the page: sends it each tick, and reads its requests."""
+"""Sends the page each tick, and reads its requests."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 
 from pydrake.systems.framework import Context
 
-from drake_haptics.authoring.plausibility import question_start
+from drake_haptics.authoring.plausibility import make_start_warnings
 from drake_haptics.authoring.speedup import find_key_that_helps
-from drake_haptics.cockpit.holding import Holding
+from drake_haptics.cockpit.handle_holder import HandleHolder
 from drake_haptics.cockpit.scene_changes import (
     CLUSTERING,
     CLUSTERINGS,
@@ -39,7 +39,8 @@ _LONGEST_DESCRIPTION = 2000
 _CLUSTERING_HELP = (
     "Clustering of contacts: shared, which is continuous, or octree, the paper's."
 )
-# Pages learn of changes no more often: dragging a slider makes one per frame.
+# Shortest time between states sent to pages, since a dragged slider changes every
+# frame.
 _TELL_PERIOD_S = 0.1
 
 
@@ -57,7 +58,7 @@ def make_setup_message(
     return {
         "meshcat": meshcat_url,
         "scene": name,
-        # What is longer than a datagram would never reach the page.
+        # A message longer than a datagram would never reach the page.
         "description": textwrap.shorten(
             scene.description, _LONGEST_DESCRIPTION, placeholder=" …"
         ),
@@ -107,17 +108,17 @@ def make_setup_message(
 
 
 class Cockpit:
-    """Shows a run on its page, and lets the page steer it.
+    """Shows a run on its page, and lets the page control it.
 
     Attributes:
-        steering: Steering of the run, which decides how it goes on.
+        steering: Steering of the run, which decides how it continues.
     """
 
     def __init__(
         self,
         page: LivePage,
         changes: SceneChanges,
-        holding: Holding,
+        holder: HandleHolder,
         picture: PagePicture,
         advice: CouplingAdvice,
         *,
@@ -125,21 +126,21 @@ class Cockpit:
         locked: str = "",
     ):
         """Begins without a diagram."""
-        self.steering = Steering(changes, holding, picture, locked)
+        self.steering = Steering(changes, holder, picture, locked)
         self._page = page
         self._changes = changes
-        self._holding = holding
+        self._holder = holder
         self._picture = picture
         self._advice = advice
         self._name = name
         self._locked = locked
-        # Times at which the page is to be told the state next, and was told it last.
+        # Times at which the state is due next, and was last sent to the page.
         self._tell_s, self._told_s = math.inf, -math.inf
         self._greeted: tuple[LiveKey, ...] = ()
         self._root: Context | None = None
-        # Complaints about where the tool began.
+        # Warnings about where the tool began.
         self._start = ""
-        # Number of stages of work that are left out, and the key that would help.
+        # Number of stages of work that are dropped, and the key that would help.
         self._shed, self._relief = 0, ""
         self._silence, self._looked_s = SilenceMonitor(), monotonic()
 
@@ -156,24 +157,24 @@ class Cockpit:
         Args:
             haptic: The diagram that runs.
             statistics: Statistics of the run.
-            pace: Paces the run.
+            pace: Pacer of the run.
             is_restart: Whether the tool begins where the handle is.
         """
         if is_restart:
-            found = question_start(haptic)
+            found = make_start_warnings(haptic)
             self._start = " ".join(f"{x[0].upper()}{x[1:]}." for x in found)
         self._haptic, self._statistics, self._pace = haptic, statistics, pace
         self._root = None
         self.steering.begin(haptic)
-        # Another diagram may have other effects to draw and to tell of.
+        # Another diagram may have other effects.
         self._greeted = ()
         self._tell()
 
     def end_tick(self, context: Context) -> bool:
-        """Notes a tick, talks with the page if it is time; to be called after a tick.
+        """Records a tick, and communicates with the page if it is time.
 
         Returns:
-            Whether the segment is to end: `Steering.take_change` has the reason.
+            Whether the segment must end; `Steering.take_change` has the reason.
         """
         self._root = context
         self._page.note(
@@ -188,12 +189,12 @@ class Cockpit:
         return self.steering.end_tick(context, now_s)
 
     def _tell(self) -> None:
-        """Tells the page the state, and what can be changed if that is new."""
+        """Sends the page the state, and what can be changed if that is new."""
         self._told_s, self._tell_s = monotonic(), math.inf
         if self._greeted != (keys := self._changes.list_keys()):
             self._greeted = keys
             self._greet()
-        backend = self._holding.backend
+        backend = self._holder.backend
         is_real = backend is not None and backend.shows_force
         warnings = [
             {
@@ -205,31 +206,32 @@ class Cockpit:
         ]
         state = {
             **self._changes.describe(),
-            "handle": self._holding.name,
+            "handle": self._holder.name,
             "views": self._picture.views,
             "warnings": warnings,
             "start": self._start,
             "relief": self._relief,
             "error": self.steering.tell_error(),
+            "answered": self.steering.answered,
         }
         self._page.tell("state", state)
 
     def _greet(self) -> None:
-        """Tells the page what can be seen and changed."""
+        """Sends the page what can be shown and changed."""
         greeting = make_setup_message(
             self._changes,
             name=self._name,
             meshcat_url=self._page.meshcat_url,
-            handles=self._holding.names,
-            site=self._holding.site,
+            handles=self._holder.names,
+            site=self._holder.site,
             locked=self._locked,
         )
         self._page.tell("hello", greeting)
 
     def _look_out(self) -> Outlook:
-        """Returns what else a frame shows."""
+        """Returns the rest of a frame."""
         assert self._root is not None
-        loop, backend = self._haptic.loop, self._holding.backend
+        loop, backend = self._haptic.loop, self._holder.backend
         reading = None if backend is None else backend.read()
         handle = loop.device.GetOutputPort("X_WH")
         X_WH = handle.Eval(loop.device.GetMyContextFromRoot(self._root))
@@ -251,7 +253,7 @@ class Cockpit:
         )
 
     def _find_relief(self, shed: int) -> None:
-        """Finds which key helps, once, when work begins to be left out."""
+        """Finds which key helps, once, when work begins to be dropped."""
         if shed and not self._shed:
             _, query_s, *_ = self._statistics.latest
             costs_us = {"contact_query": 1e6 * query_s}
@@ -263,7 +265,7 @@ class Cockpit:
         """Returns the index into `GATES` of a reading's state."""
         if reading is None:
             return SIMULATED
-        taken = self._holding.taken
+        taken = self._holder.taken
         if taken is not None and taken.waits and reading.gate == GateState.IDLE:
             return WAITING
         return int(reading.gate)

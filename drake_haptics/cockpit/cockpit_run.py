@@ -1,6 +1,6 @@
-"""Runs a scene with a page, from the opening of its device to its last tick.
+"""Runs a scene with a page, in segments.
 
-A run consists of segments: where one ends, the next diagram goes on.
+When a segment ends, the next diagram continues the run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit.cockpit import Cockpit
-from drake_haptics.cockpit.holding import Holding
+from drake_haptics.cockpit.handle_holder import HandleHolder
 from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
 from drake_haptics.cockpit.steering import Change, PagePicture
 from drake_haptics.common.errors import HapticsError
@@ -38,9 +38,9 @@ from drake_haptics.web.live_page import LivePage, look_from_the_front
 
 
 class CockpitRun:
-    """The page of a run, and the holder of its handle; to be closed.
+    """The page of a run, and the holder of its handle; it must be closed.
 
-    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
+    Like all of Drake's Meshcat, it must be used from the thread that made the Meshcat.
     """
 
     def __init__(
@@ -59,12 +59,13 @@ class CockpitRun:
         Args:
             scene: The scene to run.
             meshcat: The Meshcat that the page shows.
-            listener: The page's port, of `open_page_port`.
+            listener: The page's port, from `open_page_port`.
             name: Name of the scene.
-            device: Address of the device that is held, as for `open_device`; None for
-                the simulated one.
-            locked: Reason why only the picture may be changed; empty if all may be.
-            views: The members of `PICTURE_VIEWS` that are shown at first.
+            device: Address of the device, as for `open_device`; None for the simulated
+                one.
+            locked: Reason why only the picture may be changed; empty if everything may
+                be.
+            views: Names of `PICTURE_VIEWS` that are shown at first.
 
         Raises:
             DeviceError, SceneError, TickLogError, OSError: See `open_device`.
@@ -78,13 +79,15 @@ class CockpitRun:
             self._page = LivePage(meshcat, X_WC, listener)
             stack.enter_context(closing(self._page))
             advice = CouplingAdvice(scene)
-            self._holding = Holding(scene, meshcat, device, has_hand=advice.has_hand)
-            # Before the page, which tells of the last force.
-            stack.enter_context(closing(self._holding))
+            self._holder = HandleHolder(
+                scene, meshcat, device, has_hand=advice.has_hand
+            )
+            # Before the page, which shows the last force.
+            stack.enter_context(closing(self._holder))
             self._cockpit = Cockpit(
                 self._page,
                 self._changes,
-                self._holding,
+                self._holder,
                 PagePicture(meshcat, views),
                 advice,
                 name=name,
@@ -100,13 +103,13 @@ class CockpitRun:
 
     @property
     def scene(self) -> Scene:
-        """The scene as it is now, with what the page has changed."""
+        """The scene with the changes of the page."""
         return self._changes.scene
 
     @property
     def backend(self) -> DeviceBackend | None:
-        """The device that is held; None for the scene's simulated device."""
-        return self._holding.backend
+        """The device in use; None for the scene's simulated device."""
+        return self._holder.backend
 
     def run(
         self,
@@ -123,24 +126,25 @@ class CockpitRun:
 
         Args:
             haptic: Diagram of the scene, with `backend`.
-            duration_s: Simulated time, s; until Ctrl-C where None.
-            pace: Waits for each tick.
+            duration_s: Simulated time, s; None runs until Ctrl-C.
+            pace: Pacer that waits for each tick.
             statistics: Statistics of the whole run.
-            energy: Whether to book energy, in a run that is locked.
-            on_begin: Called with each diagram before it runs.
-            on_tick: Called after every tick with the diagram's context.
+            energy: Whether to account for energy, in a run that is locked.
+            on_begin: Function that is called with each diagram before it runs.
+            on_tick: Function that is called after every tick with the diagram's
+                context.
 
         Returns:
             The diagram that ran last.
 
         Raises:
-            RunError: The run failed, see `simulation.run`.
+            RunError: The run failed; see `simulation.run`.
         """
         self._haptic, self._is_restart = haptic, True
         run_some = partial(run, pace=pace, energy=energy, statistics=statistics)
         left_s, context = duration_s, None
         try:
-            # Round-off leaves less than a tick after the last whole one.
+            # Round-off may leave less than a tick.
             while left_s is None or left_s > 0.5 * self._haptic.period_s:
                 self._cockpit.begin(
                     self._haptic, statistics, pace, is_restart=self._is_restart
@@ -153,20 +157,20 @@ class CockpitRun:
                 self._haptic, context = self._change(change, last)
                 if self._haptic is not old:
                     release_diagram(old)
-                # Building was no stall of the loop.
+                # Building is not a stall of the loop.
                 pace.pause()
                 if duration_s is not None:
                     left_s = duration_s - statistics.ticks * self._haptic.period_s
         except KeyboardInterrupt:
             pass
         except RunError as error:
-            self._holding.close()
+            self._holder.close()
             self._page.close(f"The run {error}.")
             raise
         return self._haptic
 
     def close(self) -> None:
-        """Lets go of the handle at zero force, and ends the page."""
+        """Releases the handle at zero force, and closes the page."""
         self._closing.close()
 
     def _run_one(
@@ -179,8 +183,8 @@ class CockpitRun:
         """Runs a segment.
 
         Returns:
-            The change for which it ended, None if the run is over; and the context at
-            its end, None if it failed.
+            The change that ended it, None if the run is over; and the context at its
+            end, None if it failed.
         """
         last: Context | None = None
 
@@ -196,40 +200,40 @@ class CockpitRun:
         except RunError as error:
             if not self._steering.fall_back(str(error)):
                 raise
-            return Change(self._holding.name, restarts=True), None
+            return Change(self._holder.name, restarts=True), None
         return (None if last is None else self._steering.take_change()), last
 
     def _change(
         self, change: Change, last: Context | None
     ) -> tuple[HapticDiagram, Context]:
-        """Returns the next diagram, and the context that it starts from.
+        """Returns the next diagram, and the context from which it starts.
 
         Args:
-            change: The change for which the segment ended.
-            last: Context at its end; None where it failed, and restarts.
+            change: The change that ended the segment.
+            last: Context at its end; None if it failed and restarts.
         """
-        old, holding = self._haptic, self._holding
-        backend = holding.backend
-        # A device that says itself where it is begins there again.
+        old, holder = self._haptic, self._holder
+        backend = holder.backend
+        # A device that reports its pose begins there again.
         is_restart = change.restarts and backend is not None and backend.is_placed
-        # A hand on a device may press: a tool put into its handle would kick.
-        is_kept = change.handle == holding.name and not is_restart
-        is_felt = is_kept and holding.is_felt
+        # A hand on a device may press, so that a tool placed at its handle would kick.
+        is_kept = change.handle == holder.name and not is_restart
+        is_felt = is_kept and holder.is_felt
         goes_on = last is not None and (is_felt or not change.restarts)
         X_WH = find_handle(old, last) if goes_on else None
         self._is_restart = not goes_on
         try:
-            if change.handle != holding.name or is_restart:
-                holding.take(change.handle, X_WH)
+            if change.handle != holder.name or is_restart:
+                holder.take(change.handle, X_WH)
             new = self._build(old, X_WH)
         except HapticsError as error:
-            if holding.backend is not backend:
+            if holder.backend is not backend:
                 raise
             self._steering.refuse(str(error))
             return old, last
-        if holding.taken is not None:
-            # Effects come and go at once, but the force that is felt does not.
-            holding.taken.hand_over()
+        if holder.taken is not None:
+            # Effects change at once, but the force on the hand must not.
+            holder.taken.hand_over()
         if goes_on:
             context = transfer_context(old, last, new)
             if change.restarts:
@@ -241,18 +245,18 @@ class CockpitRun:
         return new, context
 
     def _build(self, old: HapticDiagram, X_WH: RigidTransform | None) -> HapticDiagram:
-        """Returns the diagram of the scene as it is now, held as it is now.
+        """Returns the diagram of the present scene with its present holder.
 
         Args:
             old: The diagram that ran.
-            X_WH: Pose at which the handle goes on; None where the scene begins.
+            X_WH: Pose at which the handle continues; None if the scene begins.
         """
         with warnings.catch_warnings():
-            # The page tells it.
+            # The page shows them.
             warnings.simplefilter("ignore", SceneWarning)
             return BuildHapticDiagram(
                 self._changes.scene,
-                device=self._holding.backend,
+                device=self._holder.backend,
                 meshcat=self._meshcat if old.visualizer is not None else None,
                 reuse=old,
                 X_WH=X_WH,

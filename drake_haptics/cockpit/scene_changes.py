@@ -1,4 +1,4 @@
-"""A scene while people change it, and what is wrong with its coupling."""
+"""Changes a scene while it runs, and checks its coupling."""
 
 from __future__ import annotations
 
@@ -43,61 +43,57 @@ EFFECTS = {
     "gravity": GravityParameters,
     "passivity": PassivityParameters,
 }
-# A material's value for an effect means nothing without it.
+# Values of a material that need an effect.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
 _CLUSTER_SIZE = "contact.cluster_size_m"
-# Size of clusters where `octree` is chosen and no size is given, m.
+# Default size of clusters if `octree` is chosen, m.
 _CLUSTER_SIZE_M = 5e-3
 
 
 class ChangeError(HapticsError):
-    """A change that cannot be made; says why."""
+    """A change cannot be made; the message says why."""
 
 
 class SceneChanges:
-    """The changes that people have made to a scene, as a scene file has them.
+    """The changes of a page to a scene, by keys of a scene file.
 
     Attributes:
-        scene: The scene as it is now. It is replaced, never changed.
+        file: The scene of the file.
+        scene: The present scene, which is replaced, never modified.
     """
 
     def __init__(self, scene: Scene):
-        """Begins with a scene as its file has it."""
-        self._file = scene
-        # Ranges are those of the file: what was set last does not move them.
+        """Begins with the scene of a file."""
+        self.file = scene
+        # Ranges are those of the file's values, so that changes do not move them.
         self._keys_of_file = _find_keys(scene)
         self._keys = self._keys_of_file
         self.scene = scene
 
-    @property
-    def file(self) -> Scene:
-        """The scene as its file has it."""
-        return self._file
-
     def read_file(self, item: LiveKey) -> float:
-        """Returns the number that a value is reset to, in its unit.
+        """Returns the number to which a value is reset, in its unit.
 
-        It is the file's, or the one that came with a choice where the file has no such
-        value.
+        It is the file's, or the default of a choice or effect that the file does not
+        have.
         """
         if item.key == _CLUSTER_SIZE:
             return self._cluster_size_m
         return item.read(self._with_file_effects(item))
 
     def _with_file_effects(self, item: LiveKey) -> Scene:
-        """Returns the file's scene, with the effect of a key added if need be."""
+        """Returns the file's scene, with the effect of a key added if necessary."""
         if item.group != "effects":
-            return self._file
+            return self.file
         name = item.key.split(".")[1]
-        effects = {name: getattr(self._file.effects, name) or EFFECTS[name]()}
+        effects = {name: getattr(self.file.effects, name) or EFFECTS[name]()}
         return dataclasses.replace(
-            self._file, effects=dataclasses.replace(self._file.effects, **effects)
+            self.file, effects=dataclasses.replace(self.file.effects, **effects)
         )
 
     @property
     def _cluster_size_m(self) -> float:
-        """Size of clusters where `octree` is chosen, m."""
-        return self._file.contact.cluster_size_m or _CLUSTER_SIZE_M
+        """Size of clusters if `octree` is chosen, m."""
+        return self.file.contact.cluster_size_m or _CLUSTER_SIZE_M
 
     def list_keys(self) -> tuple[LiveKey, ...]:
         """Returns the values that can be set now."""
@@ -138,7 +134,7 @@ class SceneChanges:
         self.restore(dataclasses.replace(self.scene, contact=contact))
 
     def switch_effect(self, name: str, on: bool) -> None:
-        """Adds an effect, with the file's values or its defaults, or takes it out.
+        """Adds an effect, with the file's values or its defaults, or removes it.
 
         Raises:
             ChangeError: There is no such effect, or it does nothing under the scene's
@@ -146,7 +142,7 @@ class SceneChanges:
         """
         if name not in EFFECTS:
             raise ChangeError(f"There is no effect {name!r}.")
-        effect = (getattr(self._file.effects, name) or EFFECTS[name]()) if on else None
+        effect = (getattr(self.file.effects, name) or EFFECTS[name]()) if on else None
         effects = dataclasses.replace(self.scene.effects, **{name: effect})
         if is_constraint(self.scene.contact):
             try:
@@ -160,7 +156,7 @@ class SceneChanges:
                 now, material=_make_material(file.material, now.material, effects)
             )
             for file, now in zip(
-                self._file.environment, self.scene.environment, strict=True
+                self.file.environment, self.scene.environment, strict=True
             )
         ]
         self.restore(
@@ -176,7 +172,7 @@ class SceneChanges:
         }
 
     def obey(self, request: dict[str, Any]) -> None:
-        """Obeys a page's request.
+        """Executes a page's request.
 
         Raises:
             ChangeError: The change is not possible.
@@ -189,7 +185,7 @@ class SceneChanges:
             case "effect":
                 self.switch_effect(request["name"], request["on"])
             case "reset":
-                self.restore(self._file)
+                self.restore(self.file)
 
     def describe(self) -> dict[str, Any]:
         """Returns `values`, `choices`, `effects` and `changes`, ready for JSON."""
@@ -204,11 +200,11 @@ class SceneChanges:
     def _list_changes(self) -> dict[str, Any]:
         """Returns the keys of a scene file that differ, and all effects if one does.
 
-        An effect that a file does not name is off, so its whole section is written.
+        An effect that a file does not name is off, so the whole section is written.
         """
         changes: dict[str, Any] = {}
         for section in ("contact", "coupling"):
-            file, now = getattr(self._file, section), getattr(self.scene, section)
+            file, now = getattr(self.file, section), getattr(self.scene, section)
             differing = {
                 field.name: getattr(now, field.name)
                 for field in dataclasses.fields(now)
@@ -216,7 +212,7 @@ class SceneChanges:
             }
             if differing:
                 changes[section] = differing
-        if self.scene.effects != self._file.effects:
+        if self.scene.effects != self.file.effects:
             changes["effects"] = {
                 name: _list_given(effect)
                 for name in EFFECTS
@@ -231,7 +227,7 @@ def _find_keys(scene: Scene) -> dict[str, LiveKey]:
 
 
 def _make_material(file: Material, now: Material, effects: Effects) -> Material:
-    """Returns a material without values that mean nothing with these effects."""
+    """Returns a material without values for effects that are off."""
     return dataclasses.replace(
         now,
         **{
@@ -252,16 +248,16 @@ def _list_given(effect: Any) -> dict[str, Any]:
 
 
 class CouplingAdvice:
-    """Finds what a run warns of, without building a new arm for each value."""
+    """Finds the warnings of a run, without building a new arm for each value."""
 
     def __init__(self, scene: Scene):
         """Makes the arms.
 
-        A scene whose hand cannot hold the handle, as the path is out of its reach, can
-        still run on a real device: that is a warning.
+        A scene whose hand's path is out of reach can still run on a real device, so
+        this is only a warning.
 
         Raises:
-            SceneError: There is no such preset, or its model is no arm.
+            SceneError: There is no such preset, or its model is not an arm.
         """
         self._period_s = 1.0 / scene.device.rate_hz
         self._delay_s = calc_force_delay(scene)
@@ -280,7 +276,7 @@ class CouplingAdvice:
 
     @property
     def has_hand(self) -> bool:
-        """Tells whether the scene's device can be simulated, in its hand."""
+        """Whether the scene's device can be simulated in its hand."""
         return self._held is not None
 
     def check(self, scene: Scene, *, is_real: bool) -> list[BrokenBound]:
@@ -288,10 +284,10 @@ class CouplingAdvice:
 
         Args:
             scene: Scene whose coupling is checked.
-            is_real: Whether a real device shows its force. A real one is checked as
-                `check_real_coupling` does, by its ratings and in the loosest grip; a
-                simulated one as `check_scene_coupling` does, in the scene's grip.
-                Without a simulated hand these are the ratings.
+            is_real: Whether a real device shows its force. A real one is checked as by
+                `check_real_coupling`, by its ratings and in the loosest grip; a
+                simulated one as by `check_scene_coupling`, in the scene's grip. Without
+                a simulated hand only ratings are checked.
         """
         if is_real:
             return find_real_bounds(scene, self._preset, self._loosely_held)

@@ -1,4 +1,4 @@
-"""Does what pages ask for: in the picture or a Context at once, or after a segment."""
+"""Executes requests of pages, at once or by a new segment of the run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
-from drake_haptics.cockpit.holding import DEVICE, HAND, Holding
+from drake_haptics.cockpit.handle_holder import DEVICE, HAND, HandleHolder
 from drake_haptics.cockpit.scene_changes import (
     SCENE_VERBS,
     ChangeError,
@@ -34,7 +34,7 @@ _UNFELT_OPACITY = 0.25
 
 
 class PagePicture:
-    """Keeps what is shown, whatever diagram is drawn.
+    """Keeps the views from one diagram to the next.
 
     Attributes:
         views: Whether each of `PICTURE_VIEWS` is shown.
@@ -47,18 +47,18 @@ class PagePicture:
         self._is_felt = True
 
     def begin(self, haptic: HapticDiagram) -> None:
-        """Shows the same views of a diagram as of the one before."""
+        """Shows the same views for a new diagram."""
         self._visualizer = haptic.visualizer
-        # With many objects this would take too long for a tick.
+        # With many objects this takes too long for a tick.
         self._p_WP = find_framed_points(haptic)
-        # What is drawn for the first time is not faded.
+        # New arrows are not faded.
         self._is_felt = True
         if self._visualizer is not None:
             for view, visible in self.views.items():
                 self._visualizer.Show(view, visible)
 
     def mark_felt(self, is_felt: bool) -> None:
-        """Fades the arrows of a wrench that is asked for and not shown."""
+        """Fades the arrows of a wrench that is commanded but not shown."""
         if is_felt == self._is_felt:
             return
         self._is_felt = is_felt
@@ -67,7 +67,7 @@ class PagePicture:
             self._meshcat.SetProperty(path, "modulated_opacity", opacity)
 
     def obey(self, request: dict[str, Any]) -> bool:
-        """Obeys a page's request, if it concerns the picture.
+        """Executes a page's request, if it concerns the picture.
 
         Returns:
             Whether it did.
@@ -92,49 +92,46 @@ class PagePicture:
             self._visualizer.Show(view, visible)
 
 
-# Time for which a slider rests before the diagram that it needs is built, s.
+# Time for which a slider must rest before a new diagram is built, s.
 _REST_S = 0.25
 _AT_ONCE = -math.inf
 
 
 @dataclass(frozen=True)
 class Change:
-    """The reason for which a segment of a run ended.
-
-    Attributes:
-        handle: Name of the holder of the handle from now on.
-        restarts: Whether the scene begins again.
-    """
+    """The next holder of the handle, and whether the scene begins again."""
 
     handle: str
     restarts: bool
 
 
 class Steering:
-    """Steers a run from its page.
+    """Controls a run from its page.
 
-    A run is a sequence of segments, each of one diagram. A change that can be written
-    into a Context is, between two ticks; any other one ends the segment. A change that
-    is not possible is answered with a sentence.
+    A run is a sequence of segments with one diagram each. A change that can be written
+    into a Context is written between ticks; any other change ends the segment. A change
+    that is not possible is answered with a sentence.
 
-    Values glide to those requested, so that the hand feels no step.
+    Values change gradually, so that the hand feels no step.
 
     Attributes:
-        changes: The scene as people have changed it.
+        changes: The changes of the scene.
+        answered: Number of the last switch that was executed or refused.
     """
 
     def __init__(
         self,
         changes: SceneChanges,
-        holding: Holding,
+        holder: HandleHolder,
         picture: PagePicture,
         locked: str = "",
     ):
         """Begins without a diagram."""
         self.changes = changes
+        self.answered = 0
         self._end_s = math.inf
         self._error, self._is_error_told = "", True
-        self._holding = holding
+        self._holder = holder
         self._picture = picture
         self._locked = locked
         self._running = changes.scene
@@ -142,7 +139,7 @@ class Steering:
         self._glide = self._make_glide()
 
     def begin(self, haptic: HapticDiagram) -> None:
-        """Begins a segment, of a diagram of the scene as it is now."""
+        """Begins a segment with a diagram of the present scene."""
         self._haptic = haptic
         self._running = self.changes.scene
         self._change, self._end_s = None, math.inf
@@ -150,16 +147,16 @@ class Steering:
         self._picture.begin(haptic)
 
     def carry_values(self, haptic: HapticDiagram, root: Context) -> None:
-        """Writes values that still glide into the context of a new diagram."""
+        """Writes values that still change into the context of a new diagram."""
         self._running = haptic.scene
         self._glide.aim(haptic.scene)
         self._write(haptic, root)
 
     def end_tick(self, root: Context, now_s: float) -> bool:
-        """Moves values on; to be called after each tick.
+        """Advances values that change; to be called after each tick.
 
         Returns:
-            Whether the segment is to end: `take_change` has the reason.
+            Whether the segment must end; `take_change` has the reason.
         """
         if self._glide.is_moving:
             self._glide.advance()
@@ -180,10 +177,10 @@ class Steering:
         """Undoes all changes, after a run has failed with them.
 
         Returns:
-            Whether there were any; False ends the run, as where a device is held.
+            Whether there were any changes; False ends the run, also with a real device.
         """
         changes = self.changes
-        if changes.scene is changes.file or self._holding.name == DEVICE:
+        if changes.scene is changes.file or self._holder.name == DEVICE:
             return False
         changes.restore(changes.file)
         self._glide = self._make_glide()
@@ -191,9 +188,9 @@ class Steering:
         return True
 
     def tell_error(self) -> str:
-        """Returns why the last request could not be done; empty if it could.
+        """Returns why the last request failed; empty if it succeeded.
 
-        An error that was not told yet stays when a later request succeeds.
+        An error that was not yet sent remains when a later request succeeds.
         """
         self._is_error_told = True
         return self._error
@@ -205,10 +202,10 @@ class Steering:
         X_WC: RigidTransform,
         now_s: float,
     ) -> bool:
-        """Obeys the requests of pages.
+        """Executes the requests of pages.
 
         Returns:
-            Whether there is anything new to tell.
+            Whether there is anything new to send.
         """
         before, is_new = self.changes.scene, False
         for request in asked:
@@ -222,13 +219,14 @@ class Steering:
             except (HapticsError, ValueError) as error:
                 self._fail(str(error))
             is_new = True
+            self.answered = request.get("number", self.answered)
         if self.changes.scene is not before:
             self._apply(root, now_s)
         return is_new
 
     def _point(self, request: dict[str, Any], X_WC: RigidTransform) -> bool:
-        """Moves the handle, if that is what is asked; returns whether it is."""
-        pointer = self._holding.pointer
+        """Moves the handle, if that is the request; returns whether it is."""
+        pointer = self._holder.pointer
         if pointer is None:
             return False
         if REFUSED in request:
@@ -236,13 +234,13 @@ class Steering:
         return pointer.obey(request, X_WC)
 
     def _steer(self, request: dict[str, Any]) -> bool:
-        """Changes the run, if that is what is asked; returns whether it is.
+        """Changes the run, if that is the request; returns whether it is.
 
         Raises:
             ChangeError: The change is not possible.
         """
         verb = request.get("do")
-        if verb == "resume" and (taken := self._holding.taken) is not None:
+        if verb == "resume" and (taken := self._holder.taken) is not None:
             taken.resume()
             return True
         if verb not in ("handle", "restart", *SCENE_VERBS):
@@ -253,18 +251,18 @@ class Steering:
             self.changes.obey(request)
             return True
         handle = request.get("to")
-        if handle is not None and handle not in self._holding.names:
+        if handle is not None and handle not in self._holder.names:
             raise ChangeError(f"There is no holder called {handle!r}.")
-        # All others take the tool where it is; the simulated hand begins its path.
+        # The simulated hand begins its path; others take the handle where it is.
         self._end(_AT_ONCE, handle, verb == "restart" or handle == HAND)
         return True
 
     def _fail(self, why: str) -> None:
-        """Keeps an error that the page is to be told."""
+        """Keeps an error to send to the page."""
         self._error, self._is_error_told = why, False
 
     def _apply(self, root: Context, now_s: float) -> None:
-        """Makes the loop run the scene as it is now."""
+        """Makes the loop run the present scene."""
         scene = self.changes.scene
         if is_live_change(self._haptic.scene, scene):
             self._running = scene
@@ -275,26 +273,20 @@ class Steering:
             self._end(now_s + _REST_S)
 
     def _write(self, haptic: HapticDiagram, root: Context) -> None:
-        """Writes the values as they are now."""
+        """Writes the present values."""
         put_live_values(haptic, root, self._glide.apply(self._running))
 
     def _make_glide(self) -> LiveValueRamp:
-        """Returns a glide that has arrived."""
+        """Returns a ramp that has arrived."""
         return LiveValueRamp(1.0 / self.changes.file.device.rate_hz)
 
     def _end(
         self, end_s: float, handle: str | None = None, restarts: bool = False
     ) -> None:
-        """Ends the segment at a time, for this change and those pending.
-
-        Args:
-            end_s: Time at which to end it, s; earlier if that was asked for.
-            handle: Name of the next holder of the handle, if that changes.
-            restarts: Whether the scene is to begin again.
-        """
+        """Ends the segment at a time or earlier, for this change and those pending."""
         if self._change is not None:
             handle = handle or self._change.handle
             restarts = restarts or self._change.restarts
-        self._change = Change(handle or self._holding.name, restarts)
+        self._change = Change(handle or self._holder.name, restarts)
         if self._end_s != _AT_ONCE:
             self._end_s = end_s

@@ -1,1 +1,1 @@
-"""Shared by every part of the package: errors, words, poses, colors, time."""
+"""Helpers for all parts of the package: errors, text, poses, colors, time."""

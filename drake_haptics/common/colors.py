@@ -1,4 +1,4 @@
-"""One color scheme for both viewers: (red, green, blue, alpha) in [0, 1]."""
+"""Defines the colors of viewers and plots: (red, green, blue, alpha) in [0, 1]."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BACKGROUND_BOTTOM: Color = (0.86, 0.88, 0.91, 1.0)
 FORCE_INK: Color = (0.62, 0.40, 0.0, 1.0)
 TORQUE_INK: Color = (0.0, 0.42, 0.47, 1.0)
 
-# Lines and letters on white that only have to be told apart, in an order that repeats.
+# Distinct colors for lines and letters on white, in an order that repeats.
 INKS: tuple[Color, ...] = (
     FORCE_INK,
     STICKING_CONTACT,
@@ -33,8 +33,7 @@ INKS: tuple[Color, ...] = (
     (0.66, 0.20, 0.55, 1.0),
 )
 
-# Plots of stability. One color means one thing in every panel; what is the scene's own
-# is black.
+# Plots of stability, with one meaning per color; the scene's own values are black.
 STABLE: Color = NEAR_CONTACT
 UNSTABLE: Color = PENETRATING_CONTACT
 EIGENVALUE: Color = (*HANDLE_GHOST[:3], 1.0)
@@ -43,7 +42,7 @@ ONE_AXIS: Color = ENVIRONMENT
 FORMULA: Color = (0.30, 0.36, 0.46, 1.0)
 PASSIVITY: Color = TORQUE_INK
 
-# Plots of accuracy: the front and its knees, and what is another model's.
+# Plots of accuracy: the front with its knees, and other models of contact.
 FRONT: Color = EIGENVALUE
 OTHER_MODEL: Color = FORMULA
 
@@ -67,9 +66,9 @@ _GOLDEN_RATIO = (1 + 5**0.5) / 2
 def piece_color(index: int) -> Color:
     """Returns the color of a convex piece.
 
-    Hues advance by the golden ratio, so that neighbors in the order differ as
-    much as possible for any number of pieces; value and saturation alternate
-    with periods 3 and 4 to tell apart hues that come near again.
+    Hues advance by the golden ratio, so that neighbors in the order differ as much as
+    possible for any number of pieces; saturation and value alternate with periods 3 and
+    4 to distinguish similar hues.
     """
     hue = (index / _GOLDEN_RATIO) % 1.0
     saturation = (0.55, 0.70, 0.45)[index % 3]
@@ -79,16 +78,16 @@ def piece_color(index: int) -> Color:
 
 
 def write_css(color: Color) -> str:
-    """Returns a color as style sheets write it."""
+    """Returns a color in CSS."""
     red, green, blue = (round(255 * part) for part in color[:3])
     return f"rgb({red} {green} {blue} / {color[3]:g})"
 
 
 def make_legend(has_friction: bool) -> list[dict[str, str]]:
-    """Returns the meanings of the colors in a loop's picture.
+    """Returns the legend of a loop's picture.
 
     Returns:
-        For each its `color`, as style sheets write it, and its `label`.
+        The `color` in CSS and the `label` of each entry.
     """
     rows = _LEGEND + (_FRICTION_LEGEND if has_friction else ())
     return [{"color": write_css(color), "label": label} for color, label in rows]

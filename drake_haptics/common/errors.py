@@ -1,21 +1,21 @@
-"""Errors whose message is meant for the user, as opposed to defects of the program."""
+"""Errors whose message is meant for the user."""
 
 
 class HapticsError(ValueError):
-    """Base of all errors whose message is meant for the person at the keyboard.
+    """Base class of all errors whose message is meant for the user.
 
-    The command line prints the message alone and exits with status 1; every
-    other exception keeps its traceback, because it is a defect of the program.
+    The command line prints the message and exits with status 1. It treats any other
+    exception as a defect of the program.
     """
 
 
 class MeshError(HapticsError):
-    """A mesh that cannot be used; says what is wrong and what to do."""
+    """A mesh cannot be used; the message says what is wrong and what to do."""
 
 
 class SceneError(HapticsError):
-    """A scene that cannot be used. The message names the key."""
+    """A scene cannot be used; the message names the key."""
 
 
 class DecompositionFileError(HapticsError):
-    """A stored decomposition that is damaged, foreign or of another version."""
+    """A stored decomposition is damaged, of another kind or of another version."""

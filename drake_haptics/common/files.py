@@ -1,4 +1,4 @@
-"""Finds files that packages ship, and describes those that are missing."""
+"""Finds files in packages, and describes missing files."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ _OURS = "drake_haptics"
 def resolve_package_url(file: str | os.PathLike[str]) -> str:
     """Returns the path of a file that may be named `package://PACKAGE/...`.
 
-    PACKAGE is this one, `drake_haptics`, or one that Drake's `PackageMap` knows. Any
-    other name is a path, and is returned as it is.
+    PACKAGE is `drake_haptics`, or a package in Drake's `PackageMap`. Any other name is
+    a path, and is returned unchanged.
 
     Raises:
         MeshError: There is no such package, or Drake would have to download it.
@@ -31,7 +31,7 @@ def resolve_package_url(file: str | os.PathLike[str]) -> str:
         if folder == FOLDER.name:
             return str(FOLDER / inner)
         return str(Path(__file__).parents[1] / rest)
-    from pydrake.multibody.parsing import PackageMap  # not for meshes of our own
+    from pydrake.multibody.parsing import PackageMap  # meshes do not need Drake
 
     packages = PackageMap()
     if not packages.Contains(name):
@@ -52,16 +52,16 @@ def describe_missing(path: str | os.PathLike[str]) -> str:
         return f"{path}: no such file: there is no folder {path.parent}"
     try:
         names = [item.name for item in path.parent.iterdir()]
-    except OSError:  # A folder that may be entered, but not listed.
+    except OSError:  # The folder cannot be listed.
         return words
     near = difflib.get_close_matches(path.name, names, n=1)
     return f"{words}; did you mean '{near[0]}'?" if near else words
 
 
 def get_include() -> str:
-    """Returns the folder to give to a C or C++ compiler with `-I`.
+    """Returns the include folder for a C or C++ compiler (`-I`).
 
-    It holds `drake_haptics/wire.h` (the packets) and `drake_haptics/gate.h` (what a
-    driver obeys), as `numpy.get_include` does for NumPy's.
+    It contains `drake_haptics/wire.h` (the packets) and `drake_haptics/gate.h` (the
+    gate of a driver).
     """
     return str(Path(__file__).parents[1] / "include")

@@ -1,4 +1,4 @@
-"""Short one-line texts of dataclasses with large fields, and of counts."""
+"""Formats dataclasses with large fields, and counts, as short text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-# Arrays of up to this many numbers, as a wrench or a pose, are written out.
+# Arrays of up to this many numbers, such as a wrench or a pose, are written out.
 _MOST_NUMBERS = 7
 _MOST_ITEMS = 3
 
@@ -17,9 +17,9 @@ _MOST_ITEMS = 3
 def one_line(instance: Any) -> str:
     """Returns a dataclass's name and fields, long ones by their size.
 
-    It is for a class's `__repr__`: arrays of up to seven numbers, numbers and texts are
-    written out, larger arrays and collections counted, other objects named by their
-    class.
+    It is meant as `__repr__` of a class. Numbers, strings and arrays of up to seven
+    numbers are written out; larger arrays and collections are counted; other objects
+    are named by their class.
     """
     shown = (
         f"{field.name}={brief(getattr(instance, field.name))}"

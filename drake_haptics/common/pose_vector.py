@@ -1,4 +1,4 @@
-"""Poses as vectors: 7 = [qw qx qy qz x y z], Drake's order for a floating body."""
+"""Converts poses to vectors [qw qx qy qz x y z], Drake's order, and back."""
 
 import numpy as np
 from pydrake.common.eigen_geometry import Quaternion

@@ -15,16 +15,15 @@ from drake_haptics.common.value_checks import check_positive
 
 # Percentiles are those of the latest ticks: a minute at 1 kHz.
 _MAX_RECORDS = 1 << 16
-# Below the servo's thread (core/device/realtime.cc), which must not wait for the loop.
+# Below the priority of the servo's thread (core/device/realtime.cc).
 _ABOVE_LEAST = 5
 
 
 class RealTimePacer:
-    """Waits for one tick after the other.
+    """Waits for each tick.
 
-    A tick that comes late, because the machine or the work stalled, moves all that
-    follow: what was lost is never caught up in a burst, by which a device would be
-    driven at a rate that no one has designed for.
+    A tick that is late because of a stall delays all that follow: lost time is never
+    caught up in a burst, which would drive a device at an unplanned rate.
 
     Args:
         period_s: Time from tick to tick, s.
@@ -45,7 +44,7 @@ class RealTimePacer:
         self._period_s = period_s
         self._clock = clock
         self._sleep = sleep
-        # Due from the first tick on: until then the loop is only being prepared.
+        # Set by the first tick: until then the loop is being prepared.
         self._due_s: float | None = None
         self._late_s = np.zeros(_MAX_RECORDS)
         self._last_late_s = 0.0
@@ -60,12 +59,12 @@ class RealTimePacer:
 
     @property
     def ticks(self) -> int:
-        """Ticks waited for so far, without the first."""
+        """Number of ticks waited for so far, without the first."""
         return self._ticks
 
     @property
     def skipped(self) -> int:
-        """Whole periods lost to stalls, which no tick made up for."""
+        """Number of whole periods lost to stalls."""
         return self._skipped
 
     @property
@@ -74,7 +73,7 @@ class RealTimePacer:
         return self._last_late_s
 
     def pause(self) -> None:
-        """Lets the next tick be at once, like the first: there was no stall."""
+        """Makes the next tick immediate, like the first, as after a pause."""
         self._due_s = None
 
     def wait(self) -> float:
@@ -88,7 +87,7 @@ class RealTimePacer:
             self._sleep(ahead_s)
         late_s = max(0.0, self._clock() - self._due_s)
         self._skipped += int(late_s / self._period_s)
-        # Waking up late by less than a tick is the system's noise and evens out.
+        # Waking up late by less than a tick is noise, which averages out.
         if ahead_s <= 0.0 or late_s >= self._period_s:
             self._due_s += late_s
         self._last_late_s = late_s
@@ -97,7 +96,7 @@ class RealTimePacer:
         return late_s
 
     def calc_lateness(self, last: int = _MAX_RECORDS) -> tuple[float, float, float]:
-        """Returns how late the last ticks were: p50, p99 and p99.9, s.
+        """Returns the lateness of the last ticks: p50, p99 and p99.9, s.
 
         Args:
             last: Number of ticks that count; one percentile of a thousand takes 30 µs.
@@ -112,20 +111,20 @@ class RealTimePacer:
 
 @contextmanager
 def realtime_priority() -> Iterator[bool]:
-    """Asks for a real-time priority of the thread, and gives it back at the end.
+    """Requests a real-time priority for the thread, and restores it at the end.
 
-    Between its ticks a loop sleeps, and all else runs. Threads and processes that are
-    started meanwhile have no such priority.
+    Between its ticks a loop sleeps, so that other threads run. Threads and processes
+    that are started meanwhile do not inherit the priority.
 
     Yields:
-        Whether it was granted. It is not without the right to it (on Linux an `rtprio`
-        in /etc/security/limits.conf), on one processor alone, which a loop that is too
-        slow would keep to itself, or on systems without such a call.
+        Whether it was granted. It is not granted without permission (on Linux `rtprio`
+        in /etc/security/limits.conf), on a single processor, which a slow loop would
+        block, or on systems without such a call.
     """
     if (os.cpu_count() or 1) < 2 or not hasattr(os, "sched_setscheduler"):
         yield False
         return
-    # They act on the calling thread, in spite of the names of these functions.
+    # Despite their names, these functions act on the calling thread.
     before = os.sched_getscheduler(0), os.sched_getparam(0)
     priority = os.sched_get_priority_min(os.SCHED_RR) + _ABOVE_LEAST
     try:
@@ -143,15 +142,15 @@ def realtime_priority() -> Iterator[bool]:
 
 @contextmanager
 def stop_on_signals(stop: Callable[[], None]) -> Iterator[None]:
-    """Calls `stop` at signals that a person may send, instead of their usual effect.
+    """Calls `stop` at signals that users send, instead of their usual effect.
 
-    These are SIGINT and SIGTERM; SIGHUP, for a terminal that was closed, unless it is
-    ignored (`nohup`); and SIGTSTP (Ctrl-Z), as a process that stands still cannot take
-    its force away. Only the main thread may use it.
+    These are SIGINT and SIGTERM; SIGHUP (a closed terminal), unless it is ignored
+    (`nohup`); and SIGTSTP (Ctrl-Z), because a stopped process cannot end its force.
+    Only the main thread may use it.
 
     Args:
-        stop: Asks a loop to end after its tick; called between two instructions of
-            the interpreter.
+        stop: Function that asks a loop to end after its tick; it is called between two
+            instructions of the interpreter.
     """
     numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGTSTP]
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:

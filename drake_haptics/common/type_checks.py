@@ -15,7 +15,7 @@ import numpy as np
 
 # The module of all parts of a scene.
 _SCHEMA = "drake_haptics.scene.schema"
-# Types that are accepted for these: NumPy's numbers too, and paths for file names.
+# Types that are accepted in place of these, such as NumPy's numbers and paths.
 _TAKEN: dict[Any, tuple[type, ...]] = {
     float: (numbers.Real,),
     int: (numbers.Integral,),
@@ -35,16 +35,16 @@ _WORDS: dict[Any, str] = {
 
 
 def require_kinds(hint: str = "", **arguments: tuple[object, Any]) -> None:
-    """Raises TypeError unless arguments are of their kinds.
+    """Raises TypeError unless all arguments have their types.
 
-    Parts of a scene, lists and mappings are looked into. The range of a value is not
-    checked.
+    Parts of a scene, lists and mappings are checked recursively; ranges of values are
+    not checked.
 
     Args:
         hint: Advice for the end of the message.
-        **arguments: Value and kind of each argument, by its name. A kind is what an
-            annotation says: a class, a union, `list[...]`, `Sequence[...]`,
-            `Mapping[...]`, `Callable`.
+        **arguments: Value and type of each argument, by its name. A type is written as
+            in an annotation: a class, a union, `list[...]`, `Sequence[...]`,
+            `Mapping[...]` or `Callable`.
 
     Raises:
         TypeError: The message names the argument, what it must be and what it is.
@@ -58,7 +58,7 @@ def require_kinds(hint: str = "", **arguments: tuple[object, Any]) -> None:
 
 
 def _find_complaint(name: str, value: object, kind: Any) -> str:
-    """Returns what is wrong with a value; empty if nothing is."""
+    """Returns what is wrong with a value; empty if it is valid."""
     for choice in _list_choices(kind):
         if _is_of(value, choice):
             return next(filter(None, _look_into(name, value, choice)), "")
@@ -96,7 +96,7 @@ def _look_into(name: str, value: Any, kind: Any) -> typing.Iterator[str]:
 
 @lru_cache
 def _find_fields(kind: type) -> dict[str, Any]:
-    """Returns the kinds of the fields of a part of a scene."""
+    """Returns the types of the fields of a part of a scene."""
     hints = typing.get_type_hints(kind)
     return {field.name: hints[field.name] for field in fields(kind)}
 
@@ -115,7 +115,7 @@ def _describe(value: object) -> str:
 
 
 def _name(kind: type) -> str:
-    """Returns the name of a class, with its module: there are two `Contact`."""
+    """Returns the name of a class, with its module unless it is a builtin."""
     module = kind.__module__
     if module == "builtins":
         return kind.__qualname__

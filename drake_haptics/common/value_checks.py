@@ -17,7 +17,7 @@ def check_positive(**values: Numbers) -> None:
 
 
 def check_at_least(least: float, **values: Numbers) -> None:
-    """Raises ValueError unless no number is below a least one and all are finite."""
+    """Raises ValueError unless all numbers are at least `least` and finite."""
     for name, value in values.items():
         if not np.all((np.asarray(value) >= least) & np.isfinite(value)):
             raise ValueError(

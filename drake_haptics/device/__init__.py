@@ -1,1 +1,1 @@
-"""Devices behind one interface: network, Meshcat, Haply, LCM."""
+"""Devices behind one interface: over UDP or LCM, Haply's, and Meshcat's controls."""

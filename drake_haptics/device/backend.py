@@ -1,7 +1,7 @@
-"""The interface that every haptic device implements, and the values that cross it.
+"""Defines the interface of haptic devices, and the values that cross it.
 
 All poses, velocities and wrenches here are those of the device's handle H in the frame
-B of the device's base: a device knows nothing of the world it is put into.
+B of the device's base: a device does not know its pose in the world.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class GateState(IntEnum):
     """States of a device's gate. The numbers are those on the wire."""
 
     IDLE = 0
-    """No force; waits to be enabled."""
+    """No force, until the device is enabled."""
     ACTIVE = 1
-    """Shows what is asked, within its limits."""
+    """Shows the commanded force, within its limits."""
     FAULT = 2
     """No force until it has been disabled."""
 
@@ -53,15 +53,14 @@ class DeviceReading:
     """The last state that a device sent.
 
     Attributes:
-        sequence: Rises with every new sample; the same again means that nothing new
-            has come.
-        time_s: Time of the sample by the device's own clock, s.
+        sequence: Number that increases with every new sample.
+        time_s: Time of the sample by the device's clock, s.
         X_BH: (7,) the handle's pose [qw qx qy qz x y z], unit quaternion, m.
         V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s.
         F_Ho_B: (6,) the wrench [τ; f] at Ho that the device then showed, N·m and N.
         buttons: Bit i is set while button i is held.
         gate: Whether the device shows force.
-        fault: Reason of the fault, where it is at fault.
+        fault: Reason of the fault, or `Fault.NONE`.
     """
 
     sequence: int
@@ -76,14 +75,14 @@ class DeviceReading:
     __repr__ = one_line
 
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceReading:
-        """Returns itself: a reading never changes, so that Drake copies it for free."""
+        """Returns itself: a reading never changes, so that copies can share it."""
         return self
 
 
-# Not frozen: a tick makes one, and a frozen one takes four times as long to make.
+# Not frozen: every tick makes one, and a frozen one takes four times as long.
 @dataclass(eq=False)
 class DeviceCommand:
-    """The wrench to show, and how it changes as the handle moves on.
+    """The wrench to show, and how it changes as the handle moves.
 
     Near the handle's pose X₀ and velocity V₀ for which F was computed,
 
@@ -96,8 +95,8 @@ class DeviceCommand:
         F_Ho_B: (6,) wrench [τ; f] on the handle at Ho, N·m and N.
         X_BH: (7,) pose X₀ [qw qx qy qz x y z], m.
         V_BH: (6,) spatial velocity V₀ [ω; v], rad/s and m/s.
-        K_B: (6, 6) stiffness, N·m/rad, N·m/m, N/rad and N/m; None where not known.
-        B_B: (6, 6) damping, N·m·s/rad, ..., N·s/m; None where not known.
+        K_B: (6, 6) stiffness, N·m/rad, N·m/m, N/rad and N/m; None if unknown.
+        B_B: (6, 6) damping, N·m·s/rad, ..., N·s/m; None if unknown.
     """
 
     F_Ho_B: NDArray[np.float64]
@@ -111,16 +110,16 @@ class DeviceCommand:
 
 @dataclass(frozen=True)
 class LinkStatus:
-    """State of the connection to a device, counted since it was opened.
+    """State of the connection to a device since it was opened.
 
     Attributes:
-        received: Samples that came.
-        lost: Samples that never came, by the gaps in their numbers.
-        rejected: Packets that came and were refused: damaged, old, foreign.
-        lateness_s: p50, p99 and p99.9 of how late the backend's own thread acted
-            after its deadline, s; None where it has none.
-        solved: Number of times that thread solved contact; 0 where it does not.
-        solved_late: Number of times that took longer than its period.
+        received: Number of samples received.
+        lost: Number of samples lost, by gaps in their sequence numbers.
+        rejected: Number of packets refused, because they were damaged, old or foreign.
+        lateness_s: p50, p99 and p99.9 of the lateness of the backend's thread, s; None
+            without a thread.
+        solved: Number of times that thread solved contact; 0 if it does not.
+        solved_late: Number of times that this took longer than its period.
     """
 
     received: int = 0
@@ -132,15 +131,15 @@ class LinkStatus:
 
 
 class DeviceError(HapticsError):
-    """A device that cannot be opened, or has gone; says what to do."""
+    """A device cannot be opened or has gone; the message says what to do."""
 
 
 class DeviceBackend(ABC):
-    """A device, whatever is behind it. No call ever waits for the device.
+    """A device, real or not. No call ever waits for the device.
 
-    A backend is open from construction on. It shows no force before the first
-    `write` and none after `close`. Use it as a context manager, so that it is closed
-    whatever happens.
+    A backend is open once it is constructed. It shows no force before the first `write`
+    or after `close`. Use it as a context manager, so that it is closed whatever
+    happens.
     """
 
     def __repr__(self) -> str:
@@ -156,17 +155,17 @@ class DeviceBackend(ABC):
 
     @property
     def is_placed(self) -> bool:
-        """Tells whether it relies on a pose of its base in the world."""
+        """Whether it relies on a pose of its base in the world."""
         return False
 
     @property
     def shows_force(self) -> bool:
-        """Tells whether it can show any; a mouse cannot."""
+        """Whether it can show force; a mouse cannot."""
         return True
 
     @property
     def uses_slopes(self) -> bool:
-        """Whether it uses the slopes of a command; otherwise no loop computes them."""
+        """Whether it uses the slopes of a command; otherwise they are not computed."""
         return False
 
     @abstractmethod
@@ -175,14 +174,14 @@ class DeviceBackend(ABC):
 
     @abstractmethod
     def write(self, command: DeviceCommand) -> None:
-        """Asks for a wrench from now on; the first call also enables the device."""
+        """Commands a wrench from now on; the first call also enables the device."""
 
     @abstractmethod
     def close(self) -> None:
-        """Ends at zero force and gives the device up; may be called again."""
+        """Ends at zero force and releases the device; may be called again."""
 
     def recover(self) -> None:  # noqa: B027 - most devices have nothing to leave
-        """Enables a device at fault again: disabled first, then enabled by `write`."""
+        """Disables a device at fault, so that `write` enables it again."""
 
     def start_contact_servo(self, tool: ServoTool) -> ContactServo:
         """Lets a thread solve contact between ticks and show it instead of `write`.
@@ -191,7 +190,7 @@ class DeviceBackend(ABC):
             tool: Tool of the servo, which is copied.
 
         Raises:
-            DeviceError: The device has no servo of its own.
+            DeviceError: The device has no servo.
         """
         raise DeviceError(
             "device.servo_rate_hz is for a device behind udp://, whose servo is a"
@@ -199,7 +198,7 @@ class DeviceBackend(ABC):
         )
 
     def end_contact_servo(self) -> None:  # noqa: B027 - most devices have none
-        """Ends what `start_contact_servo` has started: `write` is shown again."""
+        """Ends the contact servo, so that `write` is shown again."""
 
     def get_link_status(self) -> LinkStatus:
         """Returns the state of the connection to the device."""

@@ -23,31 +23,30 @@ from drake_haptics.device.backend import DeviceReading, Fault, GateState
 Peer = tuple[str, int]
 """Host and port."""
 
-# Longer than any packet of the protocol: a longer one is cut, and refused for it.
+# Longer than any packet of the protocol; a longer one is truncated, and refused.
 _BUFFER_BYTES = 2048
-# A tick reads at most this many packets: a host sends one or two, and a
-# flood must not keep the loop from its next tick.
+# Largest number of packets that a tick reads: a host sends one or two, and a flood must
+# not delay the next tick.
 _MAX_PACKETS_PER_TICK = 64
 _WRAP = 1 << 32
 # Only Linux has this clock.
 _SUSPENDED_CLOCK: int | None = getattr(time, "CLOCK_BOOTTIME", None)
-# Verdicts whose sender is answered. The last two come to pass only while no force is
-# shown, and their sender must learn why.
+# Verdicts whose sender is answered. The last two only occur while no force is shown,
+# and their sender must learn why.
 _ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
-# A host that is silent for longer has gone, or never was: a forged address must not be
-# sent states for ever.
+# A host that is silent for longer has gone, or its address was forged.
 _FORGETS_AFTER_NS = 5_000_000_000
-# Only the latest of the faults are listed with their times; all are counted.
+# Largest number of faults that are listed with their times; all are counted.
 _MAX_LISTED = 1000
-# The gate scales a vector down to its limit, which rounding may miss by a few bits.
+# The gate scales a vector down to its limit, up to round-off.
 _ROUNDING = 1.0 + 1e-12
 
 
 def read_clock_ns() -> int:
-    """Returns the time, ns, by a clock that goes on while the machine is suspended.
+    """Returns the time, ns, of a clock that continues while the machine is suspended.
 
-    Commands from before that are stale afterwards. Systems that have no such clock have
-    one that rests, or count the time by their monotonic clock anyway.
+    So commands from before a suspension are stale after it. Systems without such a
+    clock use their monotonic one.
     """
     if _SUSPENDED_CLOCK is None:
         return time.monotonic_ns()
@@ -58,7 +57,7 @@ class DrivenArm(Protocol):
     """The interface of an arm that a driver drives."""
 
     def start(self) -> None:
-        """Called once, before the first tick in which a wrench may be shown."""
+        """Is called once, before the first tick that may show a wrench."""
 
     def step(self, F_Ho_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Shows a wrench for a period.
@@ -75,15 +74,15 @@ class DrivenArm(Protocol):
 class DeviceDriver:
     """Serves an arm to one host at a time over the UDP protocol.
 
-    Every tick takes the commands that have come, has the gate decide what is shown,
-    moves the arm, and answers the host with one state. Nothing waits for the host. The
-    protocol is that of docs/device-protocol.md.
+    Every tick receives commands, lets the gate decide what is shown, moves the arm, and
+    sends the host one state. Nothing waits for the host. The protocol is that of
+    docs/device-protocol.md.
 
     Args:
-        arm: Arm that it drives, at rest.
+        arm: Arm to drive, at rest.
         max_force_N: Largest force that is ever shown, N.
         max_torque_Nm: Largest torque, N·m.
-        max_ttl_s: A command that is not renewed is shown no longer than this, s.
+        max_ttl_s: Longest time that a command is shown without a newer one, s.
         rate_hz: Ticks per second, Hz.
         bind: Address to listen at; only this machine can reach 127.0.0.1.
         port: UDP port to listen at; 0 lets the system choose.
@@ -118,7 +117,7 @@ class DeviceDriver:
         self._clock_ns = clock_ns
         self._start_ns = clock_ns()
         self._statistics = DriverStatistics(max_force_N, max_torque_Nm)
-        # Tells a host that this is another run of the driver than before.
+        # Tells a host that the driver was restarted.
         self._boot = 1 + secrets.randbelow(_WRAP - 1)
         self._peer: Peer | None = None
         self._heard_ns = 0
@@ -134,9 +133,9 @@ class DeviceDriver:
 
     @property
     def url(self) -> str:
-        """Address under which hosts find it, "udp://host:port"."""
+        """Address for hosts, "udp://host:port"."""
         host, port = self.address
-        # One that listens at all addresses is known by the machine's name.
+        # If it listens at all addresses, the machine's name is given.
         return f"udp://{socket.gethostname() if host == '0.0.0.0' else host}:{port}"
 
     @property
@@ -151,11 +150,11 @@ class DeviceDriver:
 
     @property
     def packets(self) -> dict[str, int]:
-        """The number of packets by the gate's verdict on them."""
+        """Number of packets by verdict of the gate."""
         return {name: count for name, count in self._gate.counts.items() if count}
 
     def stop(self) -> None:
-        """Ends `run` after the tick under way."""
+        """Ends `run` after the current tick."""
         self._stops = True
 
     def run(
@@ -163,11 +162,11 @@ class DeviceDriver:
         duration_s: float | None = None,
         on_tick: Callable[[], None] | None = None,
     ) -> None:
-        """Serves in real time. However it ends, it ends at zero force.
+        """Serves in real time, and always ends at zero force.
 
         Args:
-            duration_s: Duration, s; until `stop` where not given.
-            on_tick: Called after every tick.
+            duration_s: Duration, s. Defaults to serving until `stop`.
+            on_tick: Function that is called after every tick.
         """
         # Collecting garbage over all objects of a simulation takes many ticks.
         gc.collect()
@@ -185,7 +184,7 @@ class DeviceDriver:
             self._end()
 
     def _end(self) -> None:
-        """Shows no force, says so and gives the port up, whatever the arm does."""
+        """Shows no force, tells the host and closes the port, whatever the arm does."""
         fault = Fault(self._gate.fault)
         try:
             self._show(np.zeros(6), GateState.FAULT if fault else GateState.IDLE, fault)
@@ -193,13 +192,13 @@ class DeviceDriver:
             self._socket.close()
 
     def tick(self) -> None:
-        """Does the work of one period."""
+        """Performs one tick."""
         gate, reading = self._gate, self._reading
         now_ns = self._clock_ns()
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
             if gate.receive(now_ns, packet) in _ANSWERED:
                 self._peer, self._heard_ns = sender, now_ns
-            # A packet may take back a fault that the one before it brought to light.
+            # A packet may end a fault that the previous one caused.
             self._statistics.note_fault(self._to_s(now_ns), gate.fault)
         if now_ns - self._heard_ns > _FORGETS_AFTER_NS:
             self._peer = None
@@ -207,7 +206,7 @@ class DeviceDriver:
         self._show(F_Ho_B, GateState(gate.state), Fault(gate.fault))
 
     def _show(self, F_Ho_B: np.ndarray, gate: GateState, fault: Fault) -> None:
-        """Has the arm show a wrench, books it and tells the host."""
+        """Shows a wrench by the arm, records it and tells the host."""
         if gate == GateState.ACTIVE and not self._arm_started:
             self._arm_started = True
             self._arm.start()
@@ -232,11 +231,11 @@ class DeviceDriver:
         )
 
     def _to_s(self, time_ns: int) -> float:
-        """Returns a time since the driver began, s."""
+        """Returns the time since the driver began, s."""
         return 1e-9 * (time_ns - self._start_ns)
 
     def _pack(self, reading: DeviceReading) -> bytes:
-        """Returns a reading as a state of the protocol."""
+        """Returns a reading as a state packet of the protocol."""
         gate = self._gate
         return _core.pack_state(
             sequence=reading.sequence,
@@ -321,7 +320,7 @@ class DriverStatistics:
         self.note_fault(reading.time_s, reading.fault)
 
     def note_fault(self, time_s: float, fault: int) -> None:
-        """Notes whether the device is at fault; between ticks too.
+        """Records whether the device is at fault; also between ticks.
 
         Args:
             time_s: Time since the driver began, s.
@@ -356,7 +355,7 @@ class DriverStatistics:
 
 
 class DriverSocket:
-    """Takes commands and sends states.
+    """Receives commands and sends states.
 
     Args:
         host: Address to listen at; only this machine can reach 127.0.0.1.
@@ -367,7 +366,7 @@ class DriverSocket:
     """
 
     def __init__(self, host: str, port: int):
-        if not host:  # which would be every address that this machine has
+        if not host:  # it would mean every address of this machine
             raise HapticsError("bind is empty: give an address, such as 127.0.0.1")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
@@ -384,7 +383,7 @@ class DriverSocket:
         return host, port
 
     def receive(self, most: int) -> Iterator[tuple[bytes, Peer]]:
-        """Yields the packets that have come and who sent each, oldest first.
+        """Yields the received packets and their senders, oldest first.
 
         Args:
             most: Largest number of packets; the others are left for the next call.
@@ -395,17 +394,17 @@ class DriverSocket:
             except BlockingIOError:
                 return
             except ConnectionError:
-                continue  # some systems report here that nobody received a state
+                continue  # some systems report here that a state was not received
 
     def send(self, packet: bytes, peer: Peer) -> None:
-        """Sends a packet; one that cannot leave is lost, as on any network."""
+        """Sends a packet, which may be lost."""
         try:
             self._socket.sendto(packet, peer)
         except OSError:
-            pass  # a network that is down: no command will come, and the gate sees it
+            pass  # the network is down: without commands the gate ends the force
 
     def close(self) -> None:
-        """Gives the port up; may be called again."""
+        """Closes the port; may be called again."""
         self._socket.close()
 
 

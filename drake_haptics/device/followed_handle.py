@@ -1,4 +1,4 @@
-"""A handle without a device: it follows the pose that a person's input asks for.
+"""A virtual handle that follows the pose of an input such as a mouse or sliders.
 
 The motion is a critically damped follower of a goal, in closed form, whose speed never
 exceeds a limit.
@@ -24,31 +24,31 @@ from drake_haptics.device.rotation_vector import (
     to_rotation_vector,
 )
 
-# How far turning may lag behind its goal, rad: a rotation vector is then nearly
-# proportional to what it stands for.
+# Largest lag of rotation behind its goal, rad; a rotation vector is then nearly
+# proportional to the rotation.
 _LONGEST_LAG_RAD = 0.5
 # The runner turns at this share of the limit; a rotation vector's rate exceeds the
 # angular velocity by up to a hundredth, for a lag as long as that.
 _TURN_SHARE = 0.98
-# The handle is 50 ms behind a steady motion: less is felt as steps of the input, more
+# The handle lags 50 ms behind a steady motion: less is felt as steps of the input, more
 # as a rubber band.
 _RATE_PER_S = 40.0
-# A fast hand. At half a meter per second a tool passes through nothing.
+# A fast hand, but not so fast that a tool would pass through an object.
 _MAX_SPEED_M_PER_S = 0.5
 _MAX_TURN_RAD_PER_S = 6.0
 
 
 @dataclass(frozen=True)
 class Pursuit:
-    """One motion to a goal, of any number of coordinates that belong together.
+    """One motion of any number of coordinates to a goal.
 
-    A runner leaves the origin at time 0 with a constant velocity u, reaches its goal
-    at time T and stands there. The follower obeys
+    A runner leaves the origin at time 0 with a constant velocity u, reaches its goal at
+    time T and stops there. The follower obeys
 
         ẍ = λ² (s − x) − 2 λ ẋ
 
-    with the runner's place s. That is two equal first-order lags in series, so that
-    from rest, and from any state that such a run has left, `|ẋ| ≤ |u|` at all times.
+    with the runner's position s. That is two equal first-order lags in series, so that
+    from rest, and from any state after such a run, `|ẋ| ≤ |u|` at all times.
 
     Attributes:
         rate_per_s: λ, 1/s.
@@ -89,7 +89,7 @@ class Pursuit:
         return [run_s * u for u in self.run_velocity]
 
     def calc(self, time_s: float) -> tuple[list[float], list[float]]:
-        """Returns x and ẋ at a time from 0 s on, exactly."""
+        """Returns x and ẋ at a time, at least 0 s, exactly."""
         running_s = min(time_s, self.run_s)
         place, velocity = self._calc_running(running_s)
         standing_s = time_s - running_s
@@ -101,7 +101,7 @@ class Pursuit:
         return [s + z for s, z in zip(goal, offset, strict=True)], velocity
 
     def _calc_running(self, time_s: float) -> tuple[list[float], list[float]]:
-        """Returns x and ẋ while the runner runs: it settles 2u/λ behind it."""
+        """Returns x and ẋ while the runner runs; x settles 2u/λ behind it."""
         lag_s = 2.0 / self.rate_per_s
         run = self.run_velocity
         offset = [x + lag_s * u for x, u in zip(self.start, run, strict=True)]
@@ -130,17 +130,17 @@ class Pursuit:
 
 
 class PoseFilter:
-    """Follows a goal pose smoothly and never faster than it may.
+    """Follows a goal pose smoothly, within limits of speed.
 
-    A slider or a mouse gives poses 10 to 60 times a second, in steps; a loop asks for
-    pose and velocity 1000 times a second. A runner goes straight to each new goal at
-    the largest speed, turning about one axis, and the handle follows the runner,
-    critically damped (see `Pursuit`): its speed has no jumps and never exceeds the
+    A slider or a mouse gives poses 10 to 60 times per second, in steps; a loop needs
+    pose and velocity 1000 times per second. A runner moves straight to each new goal at
+    the largest speed, turning about one axis, and the handle follows the runner with
+    critical damping (see `Pursuit`): its speed is continuous and never exceeds the
     limit, and its velocity is the derivative of its pose.
 
-    Rotations do the same by their rotation vector from where the runner was when the
-    goal was set. The solution is in closed form: it does not depend on the times at
-    which it is evaluated, and no gap is too long.
+    Rotations do the same by their rotation vector relative to the runner when the goal
+    was set. The solution is in closed form, so that it does not depend on when or how
+    often it is evaluated.
     """
 
     def __init__(
@@ -184,11 +184,11 @@ class PoseFilter:
         self._turn = self._move = rest
 
     def set_goal(self, X_BG: np.ndarray, time_s: float) -> None:
-        """Heads for another pose from now on.
+        """Moves to another pose from now on.
 
         Args:
             X_BG: (7,) goal [qw qx qy qz x y z], m; the quaternion of any length.
-            time_s: Present time, s; a time before the last goal's is taken as that.
+            time_s: Present time, s; a time before that of the last goal counts as that.
 
         Raises:
             ValueError: The pose is not finite or has no quaternion.
@@ -230,7 +230,7 @@ class PoseFilter:
         """Returns the pose and the velocity of the handle.
 
         Args:
-            time_s: Time, s; a time before the last goal's is taken as that.
+            time_s: Time, s; a time before that of the last goal counts as that.
 
         Returns:
             X_BH (7,) [qw qx qy qz x y z], m, with a unit quaternion, and V_BH (6,)
@@ -267,9 +267,9 @@ def _split(X: np.ndarray) -> tuple[list[float], list[float]]:
 
 
 class FollowedHandle:
-    """The handle of a backend whose input device has none.
+    """The handle of a backend whose input device has no handle.
 
-    Force cannot move such a handle; it is only shown.
+    Force does not move such a handle; it is only displayed.
     """
 
     def __init__(self, X_BH: np.ndarray):
@@ -291,16 +291,16 @@ class FollowedHandle:
 
     @property
     def gate(self) -> GateState:
-        """Active from the first wrench on until it is let go."""
+        """Active from the first wrench until `release`."""
         return self._gate
 
     @property
     def F_Ho_B(self) -> np.ndarray:
-        """(6,) the wrench [τ; f] that is shown now, N·m and N."""
+        """(6,) wrench [τ; f] that is shown now, N·m and N."""
         return self._F_Ho_B
 
     def set_goal(self, X_BG: np.ndarray, time_s: float) -> None:
-        """Sends the handle to a pose (7,) from now on.
+        """Moves the handle to a pose (7,) from now on.
 
         Raises:
             ValueError: The pose is not finite or has no quaternion.
@@ -308,7 +308,7 @@ class FollowedHandle:
         self._filter.set_goal(X_BG, time_s)
 
     def show(self, command: DeviceCommand) -> None:
-        """Shows a wrench from now on; one that is not finite as zero.
+        """Shows a wrench from now on; shows zero if it is not finite.
 
         After `release` it shows none.
         """
@@ -319,13 +319,13 @@ class FollowedHandle:
         self._F_Ho_B = F_Ho_B if np.isfinite(F_Ho_B).all() else np.zeros(6)
 
     def release(self) -> None:
-        """Shows no force any more."""
+        """Shows no force from now on."""
         self._released = True
         self._gate = GateState.IDLE
         self._F_Ho_B = np.zeros(6)
 
     def read(self, time_s: float, buttons: int = 0) -> DeviceReading:
-        """Returns the reading of now."""
+        """Returns the present reading."""
         self._sequence += 1
         X_BH, V_BH = self._filter.calc(time_s)
         return DeviceReading(

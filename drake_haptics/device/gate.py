@@ -1,4 +1,4 @@
-"""Runs the gate of a device whose driver is in this process, and carries its state."""
+"""Runs the gate of a device whose driver is in this process."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _UINT32 = (1 << 32) - 1
 
 
 class LocalGate:
-    """A `DeviceGate` with the one host that it can have.
+    """A `DeviceGate` with a host in the same process.
 
-    The commands go to the gate as packets, so that the code that judges those from afar
-    judges these too.
+    Commands go to the gate as packets, so that they pass the same checks as those from
+    a network.
 
     Args:
         max_force_N: Largest force ever shown, N.
@@ -25,7 +25,7 @@ class LocalGate:
         ttl_s: Time for which a wrench holds without a newer one, s.
 
     Raises:
-        ValueError: A limit or the time is out of the bounds of `DeviceGate`.
+        ValueError: A limit or the time is out of range.
     """
 
     def __init__(self, *, max_force_N: float, max_torque_Nm: float, ttl_s: float):
@@ -47,24 +47,24 @@ class LocalGate:
         return Fault(int(self._gate.fault))
 
     def show(self, F_Ho_B: np.ndarray, now_ns: int) -> None:
-        """Asks for a wrench, and enables an idle gate that was released before.
+        """Commands a wrench, and enables an idle gate that was released before.
 
         Args:
-            F_Ho_B: (6,) [τ; f], N·m and N; what is not finite is a fault.
-            now_ns: The time, ns; never goes back.
+            F_Ho_B: (6,) [τ; f], N·m and N; a value that is not finite causes a fault.
+            now_ns: The time, ns, which must not decrease.
         """
         self._send(F_Ho_B, now_ns, enable=True)
 
     def release(self, now_ns: int) -> None:
-        """Asks for no force: it ramps out, or a fault is left."""
+        """Ramps the force down, or ends a fault."""
         self._send(np.zeros(6), now_ns, enable=False)
 
     def fail(self) -> None:
-        """Ends at zero force at once: the device itself is lost or at fault."""
+        """Ends the force at once, because the device is lost or at fault."""
         self._gate.fail()
 
     def step(self, X_BH: np.ndarray, V_BH: np.ndarray, now_ns: int) -> np.ndarray:
-        """Moves the time on.
+        """Advances the time.
 
         Args:
             X_BH: (7,) the handle's pose [qw qx qy qz x y z], m.
@@ -93,15 +93,15 @@ class LocalGate:
 
 @dataclass(frozen=True, eq=False)
 class GateStatus:
-    """The decision of a gate, as a value that ports can carry.
+    """The state of a gate, as a value for ports.
 
     Attributes:
         F_Ho_B: (6,) the wrench [τ; f] that is shown, N·m and N.
-        session: The run of a host that is served, 0 for none.
+        session: Session of the host that is served; 0 for none.
         command_sequence: Number of the newest command that was accepted.
         rejected: Number of commands that were refused.
         state: Whether force is shown.
-        fault: Reason of the fault, where it is at fault.
+        fault: Reason of the fault, or `Fault.NONE`.
         max_force_N: Largest force ever shown, N.
         max_torque_Nm: Largest torque, N·m.
     """

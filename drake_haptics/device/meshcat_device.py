@@ -19,13 +19,13 @@ from drake_haptics.device.backend import (
 )
 from drake_haptics.device.followed_handle import FollowedHandle
 
-# Sticks do not come back to exactly zero.
+# Sticks do not return to exactly zero.
 _DEADZONE = 0.12
 # The browser's standard gamepad: left stick right and down, right stick right and down;
 # the lower and the right button of the right hand's four.
 _LEFT_X, _LEFT_Y, _RIGHT_X, _RIGHT_Y = range(4)
 _MODE_BUTTON, _HOME_BUTTON = 0, 1
-# Label, and the keys that make it less and more.
+# Label, and the keys that decrease and increase the value.
 _SLIDERS = (
     ("x (mm)", "ArrowLeft", "ArrowRight"),
     ("y (mm)", "ArrowDown", "ArrowUp"),
@@ -38,20 +38,20 @@ _HOME = "bring the handle home"
 _LARGEST_ANGLES_DEG = (180.0, 90.0, 180.0)
 _POLL_PERIOD_S = 0.02
 _READOUT_PERIOD_S = 0.25
-# A stick's full deflection crosses the workspace's radius, or turns, in a second.
+# Speeds at full deflection of a stick.
 _STICK_RADII_PER_S = 1.0
 _STICK_TURN_DEG_PER_S = 90.0
 
 
 class GamepadReader:
-    """Turns a gamepad's state into speeds, and notes when its buttons go down.
+    """Converts a gamepad's state to speeds, and detects when buttons are pressed.
 
-    Left stick: along x and y, or, when it turns, tilts towards there. Right stick: up
-    and down, and turns about the vertical. The first button switches between moving
-    and turning; the second calls for home.
+    The left stick moves along x and y, or tilts the handle in that direction. The right
+    stick moves up and down, and turns about the vertical. The first button switches
+    between moving and tilting; the second moves the handle home.
 
     Attributes:
-        turns: Whether the left stick turns the handle instead of moving it.
+        turns: Whether the left stick tilts the handle instead of moving it.
     """
 
     def __init__(self) -> None:
@@ -59,13 +59,13 @@ class GamepadReader:
         self._down = 0
 
     def read_buttons(self, values: Sequence[float]) -> tuple[int, bool]:
-        """Notes the buttons' state.
+        """Reads the buttons' state.
 
         Args:
             values: Value of each button, 0 to 1.
 
         Returns:
-            The buttons as bits, and whether home was called for just now.
+            The buttons as bits, and whether the home button has just been pressed.
         """
         buttons = sum(1 << i for i, value in enumerate(values[:32]) if value > 0.5)
         pressed = buttons & ~self._down
@@ -75,10 +75,10 @@ class GamepadReader:
         return buttons, bool(pressed & (1 << _HOME_BUTTON))
 
     def read_sticks(self, axes: Sequence[float]) -> np.ndarray:
-        """Returns the speeds that the sticks ask for.
+        """Returns the speeds that the sticks command.
 
         Args:
-            axes: Positions of the sticks, -1 to 1; missing ones are at rest.
+            axes: Positions of the sticks, -1 to 1; missing ones count as 0.
 
         Returns:
             (6,) shares of the largest speeds, -1 to 1, of [x y z roll pitch yaw].
@@ -100,14 +100,14 @@ def _shape(value: float) -> float:
 
 
 class MeshcatDevice(DeviceBackend):
-    """Six sliders in Meshcat's controls, a button home, a gamepad if there is one.
+    """Six sliders and a home button in Meshcat's controls, and a gamepad if connected.
 
-    Sliders give the handle's pose from where it starts: x, y and z along the axes of
-    the world, roll, pitch and yaw about them (Drake's order). Each has two keys. A
-    gamepad's sticks move the sliders; see `GamepadReader`. The controls' last line
-    tells force and torque.
+    Sliders set the handle's pose relative to its start: x, y and z along the axes of
+    the world, and roll, pitch and yaw about them (in Drake's order). Each has two keys.
+    A gamepad's sticks move the sliders; see `GamepadReader`. The last line of the
+    controls shows force and torque.
 
-    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
+    Like all of Drake's Meshcat, it must be used from the thread that made the Meshcat.
     """
 
     def __init__(
@@ -118,18 +118,18 @@ class MeshcatDevice(DeviceBackend):
         X_BH: RigidTransform,
         workspace_radius_m: float,
     ):
-        """Puts the controls into the page.
+        """Adds the controls to the page.
 
         Args:
             meshcat: Meshcat whose page has the controls.
             X_WB: Pose of the device's base in the world of the Meshcat.
-            X_BH: Pose of the handle where it starts.
+            X_BH: Pose of the handle at its start.
             workspace_radius_m: Reach of the sliders along each axis, m.
 
         Raises:
             ValueError: A pose is not finite, or the radius is less than a millimeter
                 or not finite.
-            DeviceError: The Meshcat has such controls already.
+            DeviceError: The Meshcat already has such controls.
         """
         if not 1e-3 <= workspace_radius_m < math.inf:
             raise ValueError(
@@ -146,7 +146,7 @@ class MeshcatDevice(DeviceBackend):
         self._X_WB = X_WB
         self._X_WStart = X_WB @ X_BH
         self._meshcat = meshcat
-        # Whole steps of a slider, or its middle would not be zero.
+        # A whole number of steps, so that the middle of a slider is zero.
         reach_mm = float(round(1e3 * workspace_radius_m))
         self._largest = np.array([reach_mm] * 3 + [*_LARGEST_ANGLES_DEG])
         self._fastest = np.array(
@@ -155,7 +155,7 @@ class MeshcatDevice(DeviceBackend):
         self._gamepad = GamepadReader()
         self._buttons = 0
         self._clicks = 0
-        # Numbers of the sliders, as wanted and as the page rounds them.
+        # Values of the sliders, as set and as the page rounds them.
         self._offsets = np.zeros(6)
         self._shown = [0.0] * 6
         self._polled_s = self._read_out_s = -math.inf
@@ -174,14 +174,14 @@ class MeshcatDevice(DeviceBackend):
         return False
 
     def read(self) -> DeviceReading:
-        """Returns where the handle is now."""
+        """Returns the present reading."""
         now_s = monotonic()
         if self._is_open and now_s - self._polled_s >= _POLL_PERIOD_S:
             self._poll(now_s)
         return self._handle.read(now_s, self._buttons)
 
     def write(self, command: DeviceCommand) -> None:
-        """Shows force and torque as numbers, four times a second."""
+        """Shows force and torque as numbers, four times per second."""
         if not self._is_open:
             return
         self._handle.show(command)
@@ -191,7 +191,7 @@ class MeshcatDevice(DeviceBackend):
             self._show_wrench()
 
     def close(self) -> None:
-        """Takes the controls out of the page; the handle stays where it is."""
+        """Removes the controls from the page; the handle stays where it is."""
         if not self._is_open:
             return
         self._is_open = False
@@ -210,7 +210,7 @@ class MeshcatDevice(DeviceBackend):
 
     def _poll(self, now_s: float) -> None:
         """Reads sliders, buttons and sticks."""
-        # After a stall a stick has not been pushed all the time.
+        # A stick need not have been held during a stall.
         elapsed_s = min(now_s - self._polled_s, 2 * _POLL_PERIOD_S)
         self._polled_s = now_s
         before = self._offsets.copy()
@@ -222,7 +222,7 @@ class MeshcatDevice(DeviceBackend):
         go_home = clicks != self._clicks
         self._clicks = clicks
         pad = self._meshcat.GetGamepad()
-        # A page that has gone leaves its sticks as they were.
+        # A page that was closed leaves its sticks as they were.
         if pad.index is not None and self._meshcat.GetNumActiveConnections() > 0:
             self._buttons, called = self._gamepad.read_buttons(pad.button_values)
             go_home |= called
@@ -238,7 +238,7 @@ class MeshcatDevice(DeviceBackend):
             self._handle.set_goal(self._calc_goal(), now_s)
 
     def _show_offsets(self) -> None:
-        """Moves the sliders to the wanted offsets."""
+        """Moves the sliders to the offsets."""
         for i, (name, _, _) in enumerate(_SLIDERS):
             if abs(self._offsets[i] - self._shown[i]) >= 0.5:
                 self._shown[i] = self._meshcat.SetSliderValue(
@@ -246,7 +246,7 @@ class MeshcatDevice(DeviceBackend):
                 )
 
     def _calc_goal(self) -> np.ndarray:
-        """Returns the pose X_BG (7,) that the sliders ask for."""
+        """Returns the pose X_BG (7,) that the sliders command."""
         R_offset = RotationMatrix(RollPitchYaw(np.deg2rad(self._offsets[3:])))
         X_WG = RigidTransform(
             R_offset @ self._X_WStart.rotation(),
@@ -255,7 +255,7 @@ class MeshcatDevice(DeviceBackend):
         return pose_to_vector(self._X_WB.InvertAndCompose(X_WG))
 
     def _show_wrench(self) -> None:
-        """Writes force and torque on the last button, if they are new."""
+        """Writes force and torque on the last button, if they have changed."""
         F_Ho_B = self._handle.F_Ho_B
         force_N, torque_Nm = np.linalg.norm(F_Ho_B[3:]), np.linalg.norm(F_Ho_B[:3])
         text = f"force {force_N:.1f} N, torque {torque_Nm:.2f} N·m"

@@ -1,9 +1,9 @@
-"""Rotation vectors, quaternions and angular velocity in plain numbers.
+"""Calculates with rotation vectors, quaternions and angular velocities as lists.
 
-NumPy is slow for three numbers. A rotation vector r is axis times angle, rad; a
+NumPy would be slower for three numbers. A rotation vector r is axis times angle, rad; a
 quaternion is [w x y z]. The formulas are those of Solà, Deray and Atchuthan, "A micro
-Lie theory for state estimation in robotics", 2018, for the left Jacobian:
-R_AB(t) = exp(r(t)) R_AB(0) turns at ω in A.
+Lie theory for state estimation in robotics", 2018, for the left Jacobian: R_AB(t) =
+exp(r(t)) R_AB(0) turns at ω in A.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from collections.abc import Sequence
 
 from drake_haptics.common.value_checks import check_positive
 
-# Below this angle, rad, series to the next order are exact to round-off.
+# Below this angle, rad, series are exact to round-off.
 _SMALL_RAD = 1e-4
-# Orientations that stay the same for so long are those of a handle at rest.
+# A handle whose orientation stays the same for this long is at rest.
 _REST_S = 0.05
 
 
@@ -58,7 +58,7 @@ def invert(q: Sequence[float]) -> list[float]:
 
 
 def normalize(q: Sequence[float]) -> list[float]:
-    """Returns a quaternion (4,), not zero, at length one."""
+    """Returns a normalized quaternion (4,); it must not be zero."""
     norm = math.hypot(*q)
     return [x / norm for x in q]
 
@@ -103,11 +103,11 @@ def _cross(a: Sequence[float], b: Sequence[float]) -> list[float]:
 
 
 class TurnRate:
-    """Differences of successive orientations, smoothed by a first-order low-pass.
+    """Estimates angular velocity by smoothed differences of orientations.
 
-    A sensor that is slower than the loop repeats itself: only a new orientation makes
-    a new difference, over the time since the last new one. Between two the rate is
-    held, until 0.05 s have passed without any.
+    A first-order low-pass smooths the differences. A sensor that is slower than the
+    loop repeats values, so only a new orientation gives a difference, over the time
+    since the last new one. In between the rate is held, and after 0.05 s it is zero.
 
     The rate lags behind by the filter's time constant and half a sensor's period.
 
@@ -126,11 +126,11 @@ class TurnRate:
         self._rate = [0.0, 0.0, 0.0]
 
     def update(self, orientation: Sequence[float], time_s: float) -> list[float]:
-        """Takes the sensor's reading and returns the rate.
+        """Adds the sensor's reading and returns the rate.
 
         Args:
             orientation: (4,) unit quaternion [qw qx qy qz] of the handle in B.
-            time_s: Time at which it came, s; rises.
+            time_s: Time of the reading, s, which must increase.
 
         Returns:
             (3,) ω of the handle in B, rad/s.
@@ -138,7 +138,7 @@ class TurnRate:
         q = tuple(orientation)
         elapsed_s = time_s - self._time_s
         if self._orientation is None or elapsed_s > _REST_S:
-            # The first one, or the first after a rest: no difference means anything.
+            # The first one, or the first after a rest, gives no meaningful difference.
             self._rate = [0.0, 0.0, 0.0]
             if q != self._orientation:
                 self._orientation, self._time_s = q, time_s

@@ -1,4 +1,4 @@
-"""A device whose driver is another process, reached by UDP."""
+"""Connects over UDP to a device whose driver is another process."""
 
 from __future__ import annotations
 
@@ -20,13 +20,12 @@ from drake_haptics.device.backend import (
 class UdpDevice(DeviceBackend):
     """A device behind a driver that speaks the protocol of docs/device-protocol.md.
 
-    A thread without Python answers each sample of the driver with the wrench of the
-    last `write`, carried on by its slopes; see docs/servo.md. If this process stalls,
-    that wrench is shown for `hold_s` more and then released, and it comes back
-    gently.
+    A native thread answers each sample of the driver with the wrench of the last
+    `write`, extrapolated by its slopes; see docs/servo.md. If this process stalls, that
+    wrench is shown for another `hold_s` and then released, and it returns gradually.
 
-    A fault of the device, the restart of its driver and its silence for half a second
-    are each held as `GateState.FAULT` until `recover`.
+    After a fault of the device, a restart of its driver or half a second of silence the
+    gate is `GateState.FAULT` until `recover`.
     """
 
     def __init__(
@@ -40,13 +39,13 @@ class UdpDevice(DeviceBackend):
         hold_s: float = 0.02,
         max_rate_hz: float = 4000.0,
     ):
-        """Starts to look for the driver; does not wait for it.
+        """Starts to look for the driver, without waiting for it.
 
         Args:
             host: Name or number of the driver's machine, IPv4 or IPv6. A name is
-                looked up here.
-            port: Its UDP port.
-            max_force_N: Largest force asked for, where the device allows more, N.
+                resolved here.
+            port: UDP port of the driver.
+            max_force_N: Largest force to command, even if the device allows more, N.
             max_torque_Nm: Largest torque, N·m.
             ttl_s: Time for which the device shows a wrench that no packet renews, s.
             hold_s: Time for which a wrench is shown that no `write` renews, s.
@@ -74,7 +73,7 @@ class UdpDevice(DeviceBackend):
             ) from error
         self._reading: DeviceReading | None = None
         self._contact: ContactServo | None = None
-        # Also where the program ends without close.
+        # Also closes if the program ends without `close`.
         self._finalizer = weakref.finalize(self, self._servo.close)
 
     def read(self) -> DeviceReading | None:
@@ -84,7 +83,7 @@ class UdpDevice(DeviceBackend):
             return None
         last = self._reading
         gate, fault = _GATES[state.gate], _FAULTS[state.fault]
-        # A fault on this side of the way comes without a new sample.
+        # A fault on this side occurs without a new sample.
         if (
             last is None
             or last.sequence != state.number
@@ -95,14 +94,13 @@ class UdpDevice(DeviceBackend):
 
     @property
     def uses_slopes(self) -> bool:
-        """Always True: its servo uses them between two ticks."""
+        """Always True: its servo uses them between ticks."""
         return True
 
     def write(self, command: DeviceCommand) -> None:
-        """Asks for a wrench from now on; the first call also enables the device.
+        """Commands a wrench from now on; the first call also enables the device.
 
-        While the servo solves contact, its wrench is shown instead, and this does
-        nothing.
+        While the contact servo runs, its wrench is shown, and this does nothing.
         """
         if self._contact is not None and not self._contact.status().is_running:
             self._contact = None
@@ -114,8 +112,8 @@ class UdpDevice(DeviceBackend):
     def start_contact_servo(self, tool: ServoTool) -> ContactServo:
         """Lets a thread solve contact between ticks; `write` then does nothing.
 
-        Its first `renew` enables the device. One that was started before ends, and its
-        tool goes on from where it is, unless something was written since.
+        Its first `renew` enables the device. An earlier servo ends, and its tool
+        continues from where it is, unless `write` was called since.
         """
         self.end_contact_servo()
         if self._contact is not None:
@@ -129,11 +127,11 @@ class UdpDevice(DeviceBackend):
             self._contact.close()
 
     def recover(self) -> None:
-        """Enables a device at fault again: disabled first, then enabled by `write`."""
+        """Disables a device at fault, so that `write` enables it again."""
         self._servo.recover()
 
     def close(self) -> None:
-        """Ends at zero force and gives the device up; may be called again."""
+        """Ends at zero force and releases the device; may be called again."""
         self.end_contact_servo()
         self._finalizer()
 

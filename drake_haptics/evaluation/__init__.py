@@ -1,1 +1,1 @@
-"""Measures this package: accuracy, speed, and the paper's figures."""
+"""Measures accuracy and speed of this package, and repeats the paper's evaluation."""

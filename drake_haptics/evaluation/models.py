@@ -1,6 +1,6 @@
-"""Loads models like those of the paper: the package's own shapes, or real meshes.
+"""Loads models like those of the paper, from the package or from real meshes.
 
-The own shapes are made by `docs/generate/make_meshes.py` in a clone.
+`docs/generate/make_meshes.py` in a clone makes the package's shapes.
 """
 
 from __future__ import annotations
@@ -26,12 +26,9 @@ WRENCH_HALF_THICKNESS_M = 0.006
 
 @dataclass(frozen=True)
 class ModelSource:
-    """The source of a model.
+    """A file in a folder of real meshes, with its unit in meters.
 
-    Attributes:
-        file: Name of its file in a folder of real meshes.
-        scale: Meters per unit of the file.
-        own: Name of the shipped mesh that takes its place; empty where no mesh does.
+    A shipped mesh with that name may replace it.
     """
 
     file: str
@@ -39,8 +36,7 @@ class ModelSource:
     own: str = ""
 
 
-# By the names of the paper's Table 1. The armadillo has no unit: it is made 250 mm
-# tall.
+# By name in the paper's Table 1. The armadillo has no unit, and is made 250 mm tall.
 MODELS = {
     "Torus": ModelSource("torus_2000.obj", own="torus"),
     "Cup": ModelSource("cup_500.obj", own="cup"),
@@ -75,7 +71,7 @@ def load_model(model: str, source: str, meshes: Path | None) -> Mesh:
     """Returns the mesh of a model.
 
     Raises:
-        drake_haptics.geometry.mesh.mesh.MeshError: The file cannot be treated.
+        drake_haptics.geometry.mesh.mesh.MeshError: The file cannot be used.
     """
     entry = MODELS[model]
     if source == OWN:
@@ -85,7 +81,7 @@ def load_model(model: str, source: str, meshes: Path | None) -> Mesh:
 
 
 def load_shape(name: str) -> Mesh:
-    """Returns a mesh of the package by name: a shipped one, "organ" or "wrench"."""
+    """Returns a mesh of the package: a shipped one, "organ" or "wrench"."""
     folder = "evaluation" if name in ("organ", "wrench") else "meshes"
     return load_mesh(FOLDER / folder / f"{name}.obj")
 
@@ -106,8 +102,8 @@ class PlacedPieces(NamedTuple):
 def load_machine_room() -> list[PlacedPieces]:
     """Returns a machine room of about 900 objects and 196,000 triangles.
 
-    10 m by 7 m with z up; its complexity is that of the auxiliary machine room of Kim,
-    Otaduy, Lin and Manocha. Objects of one shape share their pieces.
+    It is 10 m by 7 m with z up, and as complex as the auxiliary machine room of Kim,
+    Otaduy, Lin and Manocha. Objects with the same shape share pieces.
     """
     with np.load(FOLDER / "evaluation" / "machine_room.npz") as room:
         pieces = {
@@ -127,9 +123,8 @@ def load_machine_room() -> list[PlacedPieces]:
 def wrench_path(num_poses: int) -> np.ndarray:
     """Returns a path of the wrench across the tubes and struts.
 
-    It comes near, presses 0.2 mm into the 17 of them, slides up along the tubes by
-    150 mm while it rocks a little, and leaves. If it takes 3 s, nothing moves faster
-    than 0.15 m/s.
+    It approaches, presses 0.2 mm into all 17, slides up along the tubes by 150 mm while
+    rocking slightly, and leaves. In 3 s nothing moves faster than 0.15 m/s.
 
     Returns:
         X_WT (num_poses, 4, 4).

@@ -1,6 +1,6 @@
 """Meshes, their convex pieces and contacts between them, without Drake.
 
-The names are imported when they are first asked for. Only the modules of
+The names are imported on first use. Only the modules of
 `drake_haptics.geometry.parsing`, which read the shapes of Drake's bodies, import Drake.
 """
 

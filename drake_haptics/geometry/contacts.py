@@ -1,4 +1,4 @@
-"""Contacts between convex pieces, as the compiled core finds them, without Drake."""
+"""Finds contacts between convex pieces by the compiled core, without Drake."""
 
 from drake_haptics._core import (
     Contact as Contact,

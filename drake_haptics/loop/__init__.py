@@ -1,1 +1,1 @@
-"""The haptic loop of a scene, wired."""
+"""Builds the haptic loop of a scene."""

@@ -1,4 +1,4 @@
-"""Adds a haptic loop to a diagram: the systems around a device, and their wiring."""
+"""Adds a haptic loop to a diagram: the systems around a device, connected."""
 
 from __future__ import annotations
 
@@ -43,8 +43,7 @@ from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 # Effects that push the tool, each through the input of its name.
 _FORCES = ("friction", "braking", "gravity")
-# Half the width of a hand, m: core/base/passive_part.h also compares a torque with a
-# force at a handle by this length.
+# Half the width of a hand, m; core/base/passive_part.h uses the same length.
 _HANDLE_LENGTH_M = 0.05
 
 
@@ -68,11 +67,11 @@ def AddHapticLoop(
 ) -> HapticLoop:
     """Adds the systems of a haptic loop around a device and connects them.
 
-    An effect that is None has no system, no port and no cost. Objects that move are
-    left to the caller: see `ConnectMovingObject`.
+    An effect that is None has no system, no port and no cost. The caller connects
+    objects that move by `ConnectMovingObject`.
 
     Args:
-        builder: Builder that gets the systems, the device among them.
+        builder: Builder to which the systems are added, including the device.
         device: Device, not yet in a builder, as from `make_device_port`.
         tool: Pieces of the tool, in its frame T: `decompose(mesh).core`.
         tool_dynamics: Mass and inertia of the tool, as from
@@ -86,25 +85,25 @@ def AddHapticLoop(
         period_s: The tick, s; also the device's.
         effects: Effects besides contact. Defaults to none.
         materials: Material of each object, in their order; values that it does not give
-            are those of `contact` and `effects`.
-        load_shedding: System that drops work from ticks that take too long; not yet in
-            a builder. The loop must be the first part of its diagram then, and a
+            default to those of `contact` and `effects`.
+        load_shedding: System that drops work from ticks that take too long, not yet in
+            a builder. With it the loop must be the first part of its diagram, and a
             `TickEnd` the last.
         servo_period_s: Period at which contact is solved between ticks under the
-            constraint law, s: by a thread of the device, or in Drake where it is
-            simulated, with a port of that period. Defaults to the tick.
-        in_one_call: Whether the core goes from query to force in one call where no
-            effect comes between; else each system computes its own part, so that it can
-            be timed.
+            constraint law, s: by a thread of the device, or in Drake for a simulated
+            device, whose port has that period. Defaults to the tick.
+        in_one_call: Whether the core calculates from query to force in one call if no
+            effect comes in between. Otherwise each system computes its part, so that it
+            can be timed.
 
     Returns:
         The systems.
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there is
-            not a material for each object, or something is asked for that the law of
-            contact does not have.
-        TypeError: An argument is of another kind; the message names it.
+            not a material for each object, or an option does not exist under the law of
+            contact.
+        TypeError: An argument has the wrong type; the message names it.
     """
     require_kinds(
         builder=(builder, DiagramBuilder),
@@ -194,12 +193,17 @@ def AddHapticLoop(
         stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
         contacts_N_per_m = stiffness.tolist()
     _connect_base(builder, base)
+    chain: dict[str, OutputPort] = {}
+    if is_chained:
+        joined = base.virtual_coupling.GetOutputPort("motions_and_gains")
+        found = base.contact_query.GetOutputPort("contact_chain")
+        chain = {"contact_chain": found, "motions_and_gains": joined}
     # The step of the constraint law includes friction.
     is_own = base.penalty is None and effects.friction is not None
     site = EffectSite(
         effects=replace(effects, friction=None) if is_own else effects,
         builder=builder,
-        sources=_find_sources(base),
+        sources=_find_sources(base) | chain,
         tool=tool,
         tool_mass_kg=tool_dynamics.mass_kg,
         p_TTcm=tool_dynamics.p_TTcm.tolist(),
@@ -217,15 +221,7 @@ def AddHapticLoop(
         else:
             sources[name] = getattr(systems, name).GetOutputPort("wrench_model")
     connect_by_name(builder, base.haptic_tool, sources)
-    chain: dict[str, OutputPort] = {}
-    if is_chained:
-        chain = {
-            "contact_chain": base.contact_query.GetOutputPort("contact_chain"),
-            "motions_and_gains": base.virtual_coupling.GetOutputPort(
-                "motions_and_gains"
-            ),
-        }
-        connect_by_name(builder, base.haptic_tool, chain)
+    connect_by_name(builder, base.haptic_tool, chain)
     if device.wants_slopes and servo_period_s is None:
         _add_handle_model(builder, base, sources, chain)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
@@ -248,7 +244,7 @@ def _find_servo(
 
 
 def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
-    """Connects the systems of every loop where no effect can come between."""
+    """Connects the systems of every loop between which no effect can come."""
     sources = {
         "X_WH": base.device.GetOutputPort("X_WH"),
         "V_WH": base.device.GetOutputPort("V_WH"),
@@ -272,7 +268,7 @@ def _add_handle_model(
     sources: Mapping[str, OutputPort],
     chain: Mapping[str, OutputPort],
 ) -> None:
-    """Adds the system that models how the wrench changes between two ticks."""
+    """Adds the system that models how the wrench changes between ticks."""
     model = builder.AddNamedSystem(
         "handle_model",
         HandleModel(
@@ -318,14 +314,13 @@ def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
 def make_coupling_gains(
     coupling: CouplingParameters, device: HapticDevice | None
 ) -> CouplingGains:
-    """Returns the gains of a coupling that yields where its device can show no more.
+    """Returns the gains of a coupling that yields at its device's limits.
 
-    A hand may be stronger than the motors it holds, and a mouse has none: without a
-    limit it would press the tool through whatever it meets. Where a device shows force
-    and no torque, a hand could still pry the tool through a wall: there the tool is
-    turned with no more than the torque of the largest force at half the width of a
-    hand, 5 cm. A device that shows no force gives no limit for pressing the tool: there
-    the coupling does not yield.
+    A hand may be stronger than the motors it holds, and a mouse has no motors: without
+    a limit it would press the tool through objects. With a device that shows force but
+    no torque, a hand could still pry the tool through a wall, so the coupling turns the
+    tool with at most the torque of the largest force at half the width of a hand, 5 cm.
+    A device that shows no force sets no limit, so that the coupling does not yield.
 
     Args:
         coupling: Stiffness and damping.

@@ -1,4 +1,4 @@
-"""Builds the diagram of a scene: its device, its loop and what shows and records it."""
+"""Builds the diagram of a scene: device, loop, visualizer and log."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
 if TYPE_CHECKING:
     from drake_haptics.tick_log.tick_recorder import TickRecorder
 
-# Largest distance of contacts from a deeper one that replaces them where a tick takes
-# too long, as a share of the tool's size.
+# Largest distance, as a share of the tool's size, within which a deeper contact
+# replaces others when ticks take too long.
 _LARGEST_CELL = 0.1
 
 
@@ -59,7 +59,7 @@ class HapticDiagram:
         tool: Mesh and convex pieces of the tool.
         environment: Mesh and convex pieces of each object of the scene, in its order.
         visualizer: System that draws the loop; None without a Meshcat.
-        backend: The device behind the port; None where it is simulated.
+        backend: The device behind the port; None if it is simulated.
         X_WB: Pose of the base of that backend in the world; None if it is simulated.
     """
 
@@ -77,10 +77,10 @@ class HapticDiagram:
     def skin_speed_m_per_s(self) -> float:
         """Speed at which the tool crosses `contact.tolerance_m` in one step, m/s.
 
-        Above it a step may carry the tool from beyond the tolerance into a shape:
-        contact is found all the same, but as deep as the step has taken the tool. The
-        speed is infinite under `contact.law: constraint`, whose step sees as far as it
-        moves.
+        Above it a step may carry the tool from beyond the tolerance into a shape.
+        Contact is still found, but as deep as the step has taken the tool. The speed is
+        infinite under `contact.law: constraint`, whose step finds all that it can
+        reach.
         """
         return calc_skin_speed(self.scene.contact, self.period_s)
 
@@ -104,41 +104,40 @@ def BuildHapticDiagram(
     reuse: HapticDiagram | None = None,
     X_WH: RigidTransform | None = None,
 ) -> HapticDiagram:
-    """Builds the diagram of a scene: loads, cuts, wires.
+    """Builds the diagram of a scene.
 
     Args:
         scene: Scene to build.
-        device: Device that is held: an open backend, which remains the caller's to
-            close, or your own port. Defaults to a simulated device in the scene's hand.
-        recorder: Recorder of every tick, used by a `TickLogSink` that is otherwise not
-            in the diagram; it remains the caller's to close.
-        meshcat: Meshcat to draw the scene in, by a `HapticVisualizer` that is otherwise
-            not in the diagram.
-        progress: Function that is called while meshes are cut, with the name of the
-            object and the share done in [0, 1].
-        reuse: Earlier diagram of a similar scene. Pieces are taken from it instead of
-            being cut again, and a backend stays where its base stands.
-        X_WH: Pose at which the handle of a backend that can stand anywhere is put.
-            Defaults to the start of the scene's hand.
+        device: An open backend, which the caller must close, or your own port. Defaults
+            to a simulated device in the scene's hand.
+        recorder: Recorder of every tick, which the caller must close. Without it there
+            is no `TickLogSink` in the diagram.
+        meshcat: Meshcat to draw the scene in. Without it there is no `HapticVisualizer`
+            in the diagram.
+        progress: Function that is called while meshes are decomposed, with the name of
+            the object and the share done, from 0 to 1.
+        reuse: Earlier diagram of a similar scene. Its pieces are used instead of
+            decomposing meshes again, and a backend keeps the pose of its base.
+        X_WH: Pose at which to place the handle of a backend that can be placed
+            anywhere. Defaults to the start of the scene's hand.
 
     Returns:
         The diagram and its parts. All systems have snake_case names; the output ports
         are those of `HapticLoop.outputs`.
 
     Warns:
-        SceneWarning: The coupling breaks a bound of stability or passivity: with a
-            simulated device in the scene's hand, or with a backend that shows force in
-            the loosest grip; or it is more than the scene's preset is rated for. A port
-            of your own is not checked.
+        SceneWarning: The coupling breaks a bound of stability or passivity, with a
+            simulated device in the scene's hand or with a backend in the loosest grip,
+            or exceeds the ratings of the scene's preset. Your own port is not checked.
 
     Raises:
-        SceneError: A value is impossible, also in a scene that was made or changed
-            in Python, or the hand's path cannot be reached.
+        SceneError: A value is invalid, also in a scene that was made or changed in
+            Python, or the hand's path cannot be reached.
         MeshError: A mesh cannot be used.
         DeviceError: The device gives no usable reading, or has no servo for
             `device.servo_rate_hz`.
-        TypeError: An argument, or a value of the scene, is of another kind; the
-            message names it.
+        TypeError: An argument or a value of the scene has the wrong type; the message
+            names it.
     """
     # The checks that fail quickly come first.
     require_kinds(
@@ -167,7 +166,7 @@ def BuildHapticDiagram(
     ]
     X_WB = None
     if isinstance(device, DeviceBackend):
-        # Read only now: while meshes are cut, a hand moves on.
+        # Read after decomposition, during which a hand may move.
         if reuse is not None and reuse.backend is device:
             X_WB = reuse.X_WB
         X_WB = X_WB or place_device(scene, device, X_WH)
@@ -209,7 +208,7 @@ def BuildHapticDiagram(
 
         visualizer = add_picture(builder, loop, meshcat, tool.core, objects, period_s)
     if meter is not None:
-        # The last to publish: the time of a tick includes its drawing.
+        # The last to publish, so that the time of a tick includes drawing.
         builder.AddNamedSystem("tick_end", TickEnd(meter, period_s))
     for name, port in loop.outputs.items():
         builder.ExportOutput(port, name)
@@ -262,7 +261,7 @@ def _make_load_shedding(
 def _find_port(
     scene: Scene, path: HandPath, device: DeviceBackend | HapticDevice | None
 ) -> HapticDevice | None:
-    """Returns the port, except for a backend, which must be read when all is ready."""
+    """Returns the port, except for a backend, which must be read last."""
     if isinstance(device, HapticDevice):
         return device
     port = None

@@ -1,4 +1,4 @@
-"""Finds how much room a tool has between objects, and a skin that fits there."""
+"""Finds the clearance of a tool between objects, and a skin that fits it."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.contact_law import LARGEST_DEFAULT_SKIN_M, is_constraint
 from drake_haptics.scene.schema import ContactParameters, HandPathParameters, Scene
 
-# Number of poses on the hand's path at which the room is measured.
+# Number of poses on the hand's path at which the clearance is measured.
 _PLACES = 100
-# Largest number of moves that lead a tool out of the objects that it is pressed into.
+# Largest number of moves that lead a tool out of objects into which it is pressed.
 _MOVES = 3
-# Cost of a move per length against the share that it wins.
+# Cost of a move per length relative to the share, and tolerance of the share.
 _WAY, _ROUNDING = 1e-5, 1e-6
 
 
 @dataclass(frozen=True)
 class Clearance:
-    """The room that a tool has where it has least.
+    """The least clearance of a tool.
 
     Attributes:
-        share: Largest share of the distances to be kept at which the tool can be moved
-            away from all surfaces at once: for one distance it is half the play between
-            two walls, divided by it.
-        objects: Indices of the objects that allow no larger share.
+        share: Largest share of the required distances that the tool can keep from all
+            surfaces at once. For one distance it is half the play between two walls,
+            divided by the distance.
+        objects: Indices of the objects that limit the share.
     """
 
     share: float
@@ -46,7 +46,7 @@ def find_clearance(
     poses: Iterable[RigidTransform],
     kept_m: Sequence[float],
 ) -> Clearance | None:
-    """Returns the least clearance of a tool, if it is less than it should be.
+    """Returns the least clearance of a tool, or None if it is sufficient.
 
     A tool that is moved by x is at least dᵢ + nᵢ·x from the piece of contact i, since
     the distance of convex pieces is convex in x. So no translation of at most the
@@ -56,17 +56,17 @@ def find_clearance(
     unbounded.
 
     Poses at which the tool overlaps an object do not count, since the tool will not be
-    there. If it does so in all tight places, because a hand presses it, the same
-    program leads it out to poses nearby.
+    there. If it overlaps at all tight places, because a hand presses it, the same
+    program leads it out to nearby poses.
 
     Args:
         tool: Pieces of the tool, in its frame T.
         objects: Pieces of each object and its pose X_WO.
-        poses: Poses X_WT at which to measure the room.
+        poses: Poses X_WT at which to measure the clearance.
         kept_m: Distance that the tool should be able to keep from each object, m.
     """
-    # Two walls that leave less than that on each side are nearer than twice as much,
-    # wherever between them the tool is.
+    # Two walls that leave less than this on each side are both within twice as much,
+    # wherever the tool is between them.
     tracker = _core.SceneTracker(tool, [body for body, _ in objects], 2 * max(kept_m))
     kept = np.array(kept_m)
     for i, (_, X_WO) in enumerate(objects):
@@ -91,7 +91,7 @@ def find_clearance(
             pressed.append(q_WT + np.concatenate([np.zeros(4), x_W]))
     rooms = [room for room in found if room is not None]
     if not rooms:
-        # In its orientation there, the tool may have less room than in the one it will
+        # The tool may have less room in this orientation than in the one that it will
         # take.
         for q_WT in pressed:
             for _ in range(_MOVES):
@@ -105,7 +105,7 @@ def find_clearance(
 
 
 def sample_path(parameters: HandPathParameters) -> list[RigidTransform]:
-    """Returns poses X_WT along a hand's path, dense enough to know a tool's way."""
+    """Returns densely sampled poses X_WT along a hand's path."""
     path = make_hand_path(parameters)
     times = np.linspace(0.0, path.duration_s, _PLACES)
     return [vector_to_pose(path.calc(t)[0]) for t in times]
@@ -116,10 +116,10 @@ def fit_skin(
     tool: _core.ConvexPieces,
     objects: Sequence[tuple[_core.ConvexPieces, RigidTransform]],
 ) -> ContactParameters:
-    """Returns a scene's contact parameters, with a skin if none is given.
+    """Returns a scene's contact parameters, with a skin if the scene gives none.
 
-    The skin is that of `find_skins`, or as much of it as the tool can keep on the
-    hand's path.
+    The skin is that of `find_skins`, or the largest share of it that the tool can keep
+    on the hand's path.
 
     Args:
         scene: Scene with the contact parameters.
@@ -136,7 +136,7 @@ def fit_skin(
 
 
 def round_down(value: float) -> float:
-    """Returns a positive number with two digits, the second not rounded up."""
+    """Returns a positive number rounded down to two digits."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 1)
     # A value of two digits may be a little less by round-off.
     return float(f"{digit * math.floor(value / digit * (1.0 + 1e-12)):.2g}")
@@ -147,8 +147,8 @@ def _find_room(
 ) -> tuple[NDArray[np.float64], Clearance | None]:
     """Returns the shortest move that keeps all contacts at their distances `kept_m`.
 
-    If no move keeps all of it, the move keeps the largest possible share of each
-    distance, and the `Clearance` holds that share.
+    If no move keeps the full distances, the move keeps the largest possible share of
+    each, and the `Clearance` has that share.
     """
     n_W, d = contacts.nhat_BA_W, contacts.distance
     stay = np.zeros(3)
@@ -179,7 +179,7 @@ def _can_leave(
     size_m: float,
     kept_m: NDArray[np.float64],
 ) -> bool:
-    """Returns whether a move along the mean normal leads the tool off all surfaces."""
+    """Returns whether a move along the mean normal frees the tool of all surfaces."""
     way = n_W.mean(axis=0)
     length = float(np.linalg.norm(way))
     if length < np.finfo(float).eps:

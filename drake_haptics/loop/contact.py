@@ -1,4 +1,4 @@
-"""The systems from the tool's pose to the contact force, for any loop."""
+"""Adds the systems that find contacts and calculate their forces."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ContactSystems:
-    """The systems that find contacts and answer them.
+    """The systems that find contacts and calculate their forces.
 
     Attributes:
         contact_query: System that finds the contacts.
-        contact_clustering: System that keeps many contacts from being stiffer than one.
-        penalty_force: System that answers them with forces.
-        pose_sampler: System that samples the poses at which contacts are searched for;
-            None if that is at every tick.
-        contact_extrapolator: System that carries contacts along between two queries;
-            None if there is a query at every tick.
+        contact_clustering: System that clusters contacts.
+        penalty_force: System that calculates the forces.
+        pose_sampler: System that samples the poses for the query; None if there is a
+            query at every tick.
+        contact_extrapolator: System that extrapolates contacts between queries; None if
+            there is a query at every tick.
     """
 
     contact_query: ContactQuery
@@ -51,7 +51,7 @@ class ContactSystems:
 
     @property
     def found_contacts(self) -> OutputPort:
-        """The contacts where the bodies are now."""
+        """The contacts at the present poses."""
         if self.contact_extrapolator is not None:
             return self.contact_extrapolator.GetOutputPort("contacts")
         return self.contact_query.GetOutputPort("contacts")
@@ -60,7 +60,7 @@ class ContactSystems:
         """Returns the distance below which contacts push, m.
 
         Args:
-            root: Context of the diagram that holds the systems.
+            root: Root context of the diagram that contains the systems.
         """
         clustering = self.contact_clustering
         rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
@@ -80,16 +80,16 @@ def add_contact_systems(
     enable_chain: bool = False,
     warns_deep: bool = False,
 ) -> ContactSystems:
-    """Adds the systems of contact; inputs from other systems are left to the caller.
+    """Adds the systems of contact; the caller connects inputs from other systems.
 
     Args:
-        builder: Builder that gets the systems.
+        builder: Builder to which the systems are added.
         tool: Pieces of the tool, in its frame T.
         objects: Objects that the tool meets.
         contact: Tolerance, clustering and gains.
-        effects: Effects, of which braking decides how far contacts are searched for.
-        materials: Material of each object; gains that it does not give are those of
-            `contact`.
+        effects: Effects; braking determines how far contacts are searched for.
+        materials: Material of each object; gains that it does not give default to those
+            of `contact`.
         period_s: The tick, s.
         enable_load_shedding: Whether query and clustering take the `load_shedding` of a
             `LoadShedding`.
@@ -115,7 +115,8 @@ def add_contact_systems(
             find_query_tolerance(contact, effects),
             cast(DepthSearch, contact.depth),
             contact.max_walk_steps,
-            # Its result holds for several ticks; `load_shedding` changes in each.
+            # `load_shedding` changes at every tick, the result of a slower query does
+            # not.
             enable_load_shedding=enable_load_shedding and contact.query_rate_hz is None,
             enable_chain=enable_chain,
         ),
@@ -159,15 +160,14 @@ def add_contact_systems(
 def can_chain(
     objects: Sequence[ContactObject], contact: ContactParameters, effects: Effects
 ) -> bool:
-    """Returns whether no system comes between the contacts and the step of the tool.
+    """Returns whether the core goes from query to force in one call.
 
-    Effects that read the contacts need these at their ports in any case.
+    It does not where an effect reads the contacts at a port, or changes them.
     """
     return (
         not is_constraint(contact)
         and contact.query_rate_hz is None
         and effects.shading is None
-        and effects.friction is None
         and effects.braking is None
         and all(item.X_WO is not None for item in objects)
     )
@@ -180,7 +180,7 @@ def _add_advance(
     objects: Sequence[ContactObject],
     period_s: float,
 ) -> tuple[PoseSampler, ContactExtrapolator]:
-    """Makes a query search for contacts once a period, and carries them along."""
+    """Makes a query search for contacts once per period, and extrapolates them."""
     from drake_haptics.systems.contact.contact_extrapolator import ContactExtrapolator
     from drake_haptics.systems.contact.pose_sampler import PoseSampler
 
@@ -200,7 +200,7 @@ def _add_advance(
 def find_contact_gains(
     contact: ContactParameters, materials: Sequence[Material]
 ) -> ContactGains:
-    """Returns the gains of each object: its material's, or else the contact's."""
+    """Returns the gains of each object, from its material or else from the contact."""
     stiffness = [material.stiffness_N_per_m for material in materials]
     damping = [material.damping_Ns_per_m for material in materials]
     return ContactGains(
@@ -212,7 +212,7 @@ def find_contact_gains(
 def find_skins(
     contact: ContactParameters, materials: Sequence[Material]
 ) -> list[float]:
-    """Returns the skin (m) of each object: its material's, or else the contact's.
+    """Returns the skin (m) of each object, from its material or else from the contact.
 
     If neither gives one, the skin is `LARGEST_DEFAULT_SKIN_M`.
     """
@@ -230,13 +230,12 @@ def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:
 def connect_by_name(
     builder: DiagramBuilder, system: System, sources: Mapping[str, OutputPort]
 ) -> None:
-    """Connects the inputs of a system to the sources of their names.
+    """Connects the inputs of a system to the sources with their names.
 
     Args:
         builder: Builder of the diagram with the system.
-        system: System in that diagram; inputs that are connected already are left
-            alone.
-        sources: Output ports, by the names of the inputs that they go to.
+        system: System in that diagram; inputs that are already connected are skipped.
+        sources: Output ports, by the names of inputs.
     """
     for port in map(system.get_input_port, range(system.num_input_ports())):
         name = port.get_name()

@@ -1,4 +1,4 @@
-"""Places a device in a scene, and makes its port for the scene's diagram."""
+"""Places a device in a scene, and makes its port."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ _QUATERNION_TOLERANCE = 1e-3
 
 @dataclass(frozen=True)
 class DevicePlacement:
-    """The place at which a scene expects its device and the device's handle.
+    """The placement of a scene's device and of its handle.
 
     Attributes:
         X_WB: Pose of the device's base in the world.
-        X_BH: Pose of the handle in the base where the scene's hand starts, for devices
-            that can be put anywhere.
-        workspace_radius_m: Distance that the handle reaches from the middle of the
-            workspace, m.
-        max_force_N: Largest force to be shown, N: the scene's, or the preset's.
-        max_torque_Nm: Largest torque to be shown, N·m: the scene's, or the preset's.
+        X_BH: Pose of the handle in the base at the start of the scene's hand, for
+            devices that can be placed anywhere.
+        workspace_radius_m: Radius of the workspace, m.
+        max_force_N: Largest force to be shown, of the scene or else of the preset, N.
+        max_torque_Nm: Largest torque to be shown, of the scene or else of the preset,
+            N·m.
     """
 
     X_WB: RigidTransform
@@ -43,7 +43,7 @@ class DevicePlacement:
 
 
 def find_device_site(scene: Scene) -> DevicePlacement:
-    """Returns the place at which a scene has its device.
+    """Returns the placement of a scene's device.
 
     Raises:
         SceneError: There is no such preset, or the hand's path is not valid.
@@ -70,7 +70,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
         timeout_s: Longest time to wait for the reading, s.
 
     Raises:
-        DeviceError: No reading has come, or none that could be used.
+        DeviceError: The device has sent no usable reading.
         ValueError: The reading's pose is not rigid, or a number is not finite.
     """
     end_s = time.monotonic() + timeout_s
@@ -94,7 +94,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
 
 
 def _check_reading(reading: DeviceReading) -> None:
-    """Raises ValueError for a reading that no handle can have."""
+    """Raises ValueError for an invalid reading."""
     for name, size in (("X_BH", 7), ("V_BH", 6)):
         values = np.asarray(getattr(reading, name), dtype=float)
         if values.shape != (size,) or not np.isfinite(values).all():
@@ -115,14 +115,15 @@ def place_device(
 ) -> RigidTransform:
     """Returns X_WB, the pose of the base of a scene's device.
 
-    Where neither the scene nor the backend gives that pose, the base is placed so that
-    the handle, wherever it is held at first, is where the scene's hand would start:
-    outside of all objects.
+    If neither the scene nor the backend gives that pose, the base is placed so that the
+    handle's present position is where the scene's hand would start, outside all
+    objects.
 
     Args:
         scene: Scene, which may give the pose of the base.
         backend: Open device.
-        X_WH: Pose at which the handle is put instead of the start of the scene's hand.
+        X_WH: Pose at which to place the handle. Defaults to the start of the scene's
+            hand.
 
     Raises:
         SceneError: There is no such preset, or the hand's path is not valid.
@@ -140,7 +141,7 @@ def place_device(
 def make_haptic_device(
     scene: Scene, backend: DeviceBackend, X_WB: RigidTransform
 ) -> tuple[HapticDevice, RigidTransform]:
-    """Returns a scene's device port before a backend, and the pose X_WH of its handle.
+    """Returns a scene's device port for a backend, and the pose X_WH of its handle.
 
     Args:
         scene: Scene that gives the rate and the limits.
@@ -169,15 +170,15 @@ def make_device_port(
     max_force_N: float,
     max_torque_Nm: float,
 ) -> tuple[HapticDevice, RigidTransform]:
-    """Returns a device port before a backend, and the present pose X_WH of its handle.
+    """Returns a device port for a backend, and the present pose X_WH of its handle.
 
     The port is for the argument `device` of `AddHapticLoop` or `AddHapticRendering`.
     The function waits for the first reading.
 
     Args:
-        backend: Open device; it remains the caller's to close.
+        backend: Open device, which the caller must close.
         X_WB: Pose of its base in the world. Defaults to the identity.
-        period_s: The tick, s; also that of the loop or rendering that gets the port.
+        period_s: The tick, s, which must be that of the loop or rendering.
         max_force_N: Largest force shown, N.
         max_torque_Nm: Largest torque shown, N·m.
 
@@ -188,7 +189,7 @@ def make_device_port(
     """
     X_WB = X_WB or RigidTransform()
     reading = wait_for_reading(backend)
-    # Ends the servo of a loop that was built before for this device.
+    # Ends the servo of an earlier loop with this device.
     backend.end_contact_servo()
     io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")

@@ -1,4 +1,4 @@
-"""Turns arms into devices: a scene's simulated arm over UDP, any arm over LCM."""
+"""Makes devices of arms: a scene's simulated arm over UDP, any arm over LCM."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
 
 
 class SimulatedDriverArm:
-    """An arm that a driver can drive: `drake_haptics.device.driver.DrivenArm`.
+    """A simulated arm for a driver; a `drake_haptics.device.driver.DrivenArm`.
 
-    It and the hand are those of the scene as `BuildHapticDiagram` makes them. The
-    hand holds the handle where its path starts until the device first becomes active,
-    and then follows the path.
+    Arm and hand are those that `BuildHapticDiagram` makes for the scene. The hand holds
+    the handle at the start of its path until the device first becomes active, and then
+    follows the path.
 
     Args:
-        scene: Scene that names device, base, grasp and hand; its rate is the driver's.
+        scene: Scene that names device, base, grasp and hand, and the driver's rate.
 
     Raises:
-        SceneError: A preset, a grip or the path is impossible.
+        SceneError: A preset, a grip or the path is invalid.
     """
 
     def __init__(self, scene: Scene):
@@ -75,11 +75,11 @@ class SimulatedDriverArm:
         return self._max_torque_Nm
 
     def start(self) -> None:
-        """Lets the hand start along its path."""
+        """Starts the hand along its path."""
         self._starts = True
 
     def step(self, F_Ho_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Moves arm and hand on by one period.
+        """Advances arm and hand by one period.
 
         Args:
             F_Ho_B: (6,) wrench [τ; f] of the motors on the handle, N·m and N.
@@ -90,7 +90,7 @@ class SimulatedDriverArm:
         """
         if self._starts:
             self._ticks += 1
-            # The wrench stays as it is over the period, as motors hold it.
+            # Motors hold the wrench over the period.
             self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
                 self._to_base.change_wrench_back(F_Ho_B)
             )
@@ -111,9 +111,8 @@ def make_simulated_driver(
 
     Args:
         scene: Scene that names the device, its place and its hand.
-        rate_hz: Ticks per second, Hz; the scene's if None.
-        max_ttl_s: Longest time that a command is shown without a newer one, s. This and
-            the arguments that follow are those of `DeviceDriver`.
+        rate_hz: Ticks per second, Hz. None for the scene's rate.
+        max_ttl_s: Longest time that a command is shown without a newer one, s.
         bind: Address to listen at.
         port: UDP port to listen at.
 
@@ -145,22 +144,22 @@ def AddLcmDriver(
     max_force_N: float,
     max_torque_Nm: float,
 ) -> HapticCommandReceiver:
-    """Adds the systems that turn an arm into a device on LCM, behind the gate.
+    """Adds the systems that make an arm a device on LCM, behind the gate.
 
-    Run the diagram in real time: the time of its context is the gate's clock.
+    Run the diagram in real time, because the time of its context is the gate's clock.
 
     Args:
         builder: Builder with the arm and Drake's `LcmInterfaceSystem` of the same
             `lcm`; without the latter, call `lcm.HandleSubscriptions(0)` before each
             tick.
-        arm: A backend as `HapticDevice` documents it; its world is the base frame B.
+        arm: A backend as documented in `HapticDevice`, whose world is the base frame B.
         lcm: LCM instance to send and listen with.
         period_s: The device's tick, s.
         max_force_N: Largest force ever shown, N.
         max_torque_Nm: Largest torque ever shown, N·m.
 
     Returns:
-        The gate, whose output `gate_status` tells its state.
+        The gate, whose output `gate_status` is its state.
 
     Raises:
         ValueError: The period or a limit is out of range.

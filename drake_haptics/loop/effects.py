@@ -1,7 +1,6 @@
-"""Adds the systems of the effects that a scene names, and wires them.
+"""Adds the systems of the effects that a scene names, and connects them.
 
-Each system is imported where it is added: a system that a scene does not name is not
-even loaded.
+Each system is imported where it is added, so that other systems are not even loaded.
 """
 
 from __future__ import annotations
@@ -29,27 +28,27 @@ from drake_haptics.scene.schema import (
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# Hands on a desk reach no higher.
+# Largest lift by a hand on a desk.
 _HIGHEST_LIFT_M = 0.5
 
 
 @dataclass(frozen=True)
 class EffectSite:
-    """The effects to add, their place in a diagram, and the data to make them from.
+    """The effects to add, and the diagram and data for them.
 
     Attributes:
-        effects: Effects to add; None marks those to leave out.
-        builder: Builder that gets the systems.
-        sources: Output ports to which the systems' inputs are connected, by the names
-            of the inputs; poses and velocities of objects that move are left out.
+        effects: Effects to add, except those that are None.
+        builder: Builder to which the systems are added.
+        sources: Output ports by the names of the inputs that they feed, without poses
+            and velocities of objects that move.
         tool: Pieces of the tool, in its frame T.
         tool_mass_kg: Mass of the tool, kg.
         p_TTcm: (3,) center of mass of the tool, m.
         objects: Objects that the tool meets.
         materials: Material of each object.
         period_s: The tick, s.
-        springs: Springs that can push the device: the largest load and the stiffness of
-            each, in N and N/m or N·m and N·m/rad.
+        springs: Largest load and stiffness of each spring that can push the device, in
+            N and N/m or N·m and N·m/rad.
     """
 
     effects: Effects
@@ -67,13 +66,13 @@ class EffectSite:
 def find_springs(
     device: HapticDevice, gains: _core.CouplingGains, contacts_N_per_m: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Returns the springs that push a device, as `EffectSite` takes them.
+    """Returns the springs of an `EffectSite`.
 
     Args:
         device: Device, whose limits load the springs.
         gains: Gains of the coupling.
-        contacts_N_per_m: Stiffness of contact with each object, N/m; empty where
-            contact stores no energy.
+        contacts_N_per_m: Stiffness of contact with each object, N/m; empty if contact
+            stores no energy.
     """
     return [
         (device.max_force_N, gains.stiffness_N_per_m),
@@ -83,9 +82,9 @@ def find_springs(
 
 
 def add_effects(site: EffectSite) -> EffectSystems:
-    """Adds the systems of a site's effects and connects their inputs.
+    """Adds the systems of effects and connects their inputs.
 
-    Their outputs are left to the caller.
+    The caller connects their outputs.
     """
     add: dict[str, Callable[[Any, EffectSite], System]] = {
         "shading": _add_shading,
@@ -122,6 +121,7 @@ def _add_friction(effect: FrictionParameters, site: EffectSite) -> System:
         period_s=site.period_s,
         coefficient=find_coefficients(effect, site.materials),
         break_away_m=effect.break_away_m,
+        enable_chain="contact_chain" in site.sources,
     )
     return _add(site, "stick_slip_friction", system)
 
@@ -129,7 +129,7 @@ def _add_friction(effect: FrictionParameters, site: EffectSite) -> System:
 def find_coefficients(
     effect: FrictionParameters, materials: Sequence[Material]
 ) -> list[float]:
-    """Returns the friction of each object: its material's, or else the effect's."""
+    """Returns the friction of each object, from its material or else the effect."""
     own = [material.friction_coefficient for material in materials]
     return [effect.coefficient if mu is None else mu for mu in own]
 
@@ -182,7 +182,7 @@ def _calc_reserve(site: EffectSite) -> float:
 
 
 def _add(site: EffectSite, name: str, system: System) -> System:
-    """Adds a system and connects its inputs to the sources of their names."""
+    """Adds a system and connects its inputs to the sources with their names."""
     site.builder.AddNamedSystem(name, system)
     connect_by_name(site.builder, system, site.sources)
     return system

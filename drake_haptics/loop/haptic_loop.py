@@ -31,16 +31,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BaseSystems:
-    """The systems that every loop has, those of contact among them.
+    """The systems that every loop has, including those of contact.
 
     Attributes:
         device: The device port.
         virtual_coupling: Spring and damper between the device's handle and the tool;
             under `contact.law: constraint` the same system as `haptic_tool`.
         haptic_tool: System of the tool's body.
-        load_shedding: System that drops work from slow ticks; None without a budget of
-            ticks.
-        penalty: The systems that find contacts and answer them; None under
+        load_shedding: System that drops work from slow ticks; None without a budget.
+        penalty: The systems that find contacts and calculate their forces; None under
             `contact.law: constraint`, where `haptic_tool` does.
     """
 
@@ -67,17 +66,17 @@ class BaseSystems:
 
     @property
     def pose_sampler(self) -> PoseSampler | None:
-        """System that samples the pose for the query, if not at every tick."""
+        """System that samples the poses for the query; None if not needed."""
         return None if self.penalty is None else self.penalty.pose_sampler
 
     @property
     def contact_extrapolator(self) -> ContactExtrapolator | None:
-        """The system that carries contacts along between two queries."""
+        """System that extrapolates contacts between queries; None if not needed."""
         return None if self.penalty is None else self.penalty.contact_extrapolator
 
     @property
     def found_contacts(self) -> OutputPort:
-        """The contacts where the bodies are now."""
+        """The contacts at the present poses."""
         if self.penalty is None:
             return self.haptic_tool.GetOutputPort("contacts")
         return self.penalty.found_contacts
@@ -112,7 +111,7 @@ class BaseSystems:
 
     @property
     def _answer(self) -> System:
-        """The system that answers contacts."""
+        """The system that calculates the forces of contacts."""
         if self.penalty is None:
             return self.haptic_tool
         return self.penalty.penalty_force
@@ -134,7 +133,7 @@ class BaseSystems:
 
 @dataclass(frozen=True)
 class EffectSystems:
-    """The system of each effect; None where the scene does not name it.
+    """The system of each effect; None if the scene does not name it.
 
     Attributes:
         shading: System that smooths the contacts' normals.
@@ -142,7 +141,7 @@ class EffectSystems:
             same as `haptic_tool`.
         braking: System that brakes before contact.
         gravity: System of the tool's weight.
-        passivity: System that takes surplus energy out of the device's wrench.
+        passivity: System that keeps the device's wrench passive.
     """
 
     shading: ForceShading | None = None
@@ -154,7 +153,7 @@ class EffectSystems:
 
 @dataclass(frozen=True)
 class HapticLoop(BaseSystems):
-    """The systems of one haptic loop, wired.
+    """The connected systems of one haptic loop.
 
     Attributes:
         effects: Systems of the effects.
@@ -171,14 +170,14 @@ class HapticLoop(BaseSystems):
 
     @property
     def contacts(self) -> OutputPort:
-        """The contacts that are clustered, shaded if the scene asks for it."""
+        """The contacts that are clustered, shaded with that effect."""
         if self.effects.shading is not None:
             return self.effects.shading.GetOutputPort("contacts")
         return self.found_contacts
 
     @property
     def commanded_wrench(self) -> OutputPort:
-        """The wrench (6) [τ; f] on the handle that the device is asked to show."""
+        """The wrench (6) [τ; f] on the handle that is commanded to the device."""
         if self.effects.passivity is not None:
             return self.effects.passivity.GetOutputPort("F_Ho_W_commanded")
         return self.virtual_coupling.GetOutputPort("F_Ho_W_commanded")
@@ -187,22 +186,21 @@ class HapticLoop(BaseSystems):
     def outputs(self) -> dict[str, OutputPort]:
         """Output ports of the loop, by name.
 
-        `BuildHapticDiagram` exports each by this name. In your own diagram each
-        can be read, logged, connected or exported like any port.
+        `BuildHapticDiagram` exports each by this name.
 
         * `X_WT` (7) and `V_WT` (6) are those of `HapticTool`: pose
           [qw qx qy qz x y z], m, and spatial velocity [ω; v], rad/s and m/s, of the
           tool in the world.
         * `X_WH` (7), `V_WH` (6), `F_Ho_W_rendered` (6) and `status` are those of
-          `HapticDevice`: handle, wrench that it shows, state of its gate.
-        * `F_Ho_W_commanded` (6) is the wrench [τ; f] that the device is asked to show
-          on the handle at its origin in the world, N·m and N.
-        * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
-          `clusters` a `drake_haptics._core.ClusterSet`.
-        * `contact_wrench` and `F_To_W` (6) are those of `PenaltyForce`: contact
-          alone, on the tool.
+          `HapticDevice`: handle, rendered wrench, and status of the limits.
+        * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
+          world that is commanded to the device, N·m and N.
+        * `contacts` is a `drake_haptics.ContactSet`, shaded with that effect;
+          `clusters` is a `drake_haptics._core.ClusterSet`.
+        * `contact_wrench` and `F_To_W` (6) are those of `PenaltyForce`, of contact
+          alone.
         * Under `contact.law: constraint` they are those of `ConstraintToolStep`, and
-          `clusters` are its `contacts`: each pushes by itself.
+          `clusters` are its `contacts`.
         * `friction_force` (with friction) is that of `StickSlipFriction` or
           `ConstraintToolStep`, `energy_J` (with passivity control) that of
           `PassivityControl`.
@@ -241,7 +239,7 @@ def ConnectMovingObject(
     Args:
         builder: Builder of the diagram with the loop.
         loop: Return value of `AddHapticLoop`.
-        name: Name of an object without a pose of its own.
+        name: Name of an object whose `X_WO` is None.
         X_WO: Pose (7) [qw qx qy qz x y z] of the object in the world, m.
         V_WO: Spatial velocity (6) [ω; v] of the object in the world, rad/s and m/s.
 
@@ -255,7 +253,7 @@ def ConnectMovingObject(
         parts += [loop.penalty_force, loop.pose_sampler, loop.contact_extrapolator]
         if loop.pose_sampler is None:
             parts.append(loop.contact_query)
-    # Under the constraint law one system stands for several parts.
+    # Under the constraint law one system is several of these parts.
     systems = [part for part in dict.fromkeys(parts) if part is not None]
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
     inputs = [

@@ -1,4 +1,4 @@
-"""Opens devices by their address, as the command line names them."""
+"""Opens devices by their address, as on the command line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HAPLY_PORT = 10001
 
 
 class NoPageError(DeviceError):
-    """A device that is moved on a page was asked for without a page."""
+    """A device that is moved on a page was requested without a page."""
 
 
 # Opens a device by the parts of its address.
@@ -31,25 +31,25 @@ def open_device(
     * `udp://HOST:PORT`: a driver that speaks the protocol of docs/device-protocol.md
     * `haply://HOST[:PORT]`: an Inverse3 behind Haply's Inverse Service
     * `lcm:[URL]`: a driver on LCM, at an LCM URL or the default one
-    * `meshcat:`: sliders and gamepad of Drake's page
+    * `meshcat:`: sliders and gamepad of Meshcat's page
     * `mouse:`: the mouse, over the picture of the scene
-    * `replay:FILE`: the handle of a log of `run --log`
+    * `replay:FILE`: the handle in a log of `run --log`
 
-    The address of an Inverse3 may end in options, like `?max_force_N=4`: see
+    The address of an Inverse3 may end with options, such as `?max_force_N=4`; see
     `HaplyDevice.open`.
 
     Args:
         address: Address in one of these forms.
-        scene: Scene that gives the place and the limits of the device.
+        scene: Scene that gives the placement and the limits of the device.
         meshcat: Meshcat whose page `meshcat:` and `mouse:` need; without it they raise
             `NoPageError`.
 
     Returns:
-        The device, open; it is the caller's to close.
+        The open device, which the caller must close.
 
     Raises:
-        DeviceError: There is no such kind of device, something is missing from the
-            address, or it cannot be opened.
+        DeviceError: There is no such kind of device, the address is incomplete, or the
+            device cannot be opened.
         SceneError: There is no such preset, or the hand's path is not valid.
         TickLogError: A log cannot be read.
         OSError: A log cannot be opened.
@@ -99,7 +99,7 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
     """Returns host and port of an address."""
     try:
         port = parts.port or default_port
-    except ValueError as error:  # The port is not a number, or too large.
+    except ValueError as error:  # The port is not a number, or is too large.
         raise DeviceError(f"device {parts.geturl()!r}: {error}") from error
     if not parts.hostname or port is None:
         raise DeviceError(

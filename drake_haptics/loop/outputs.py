@@ -1,4 +1,4 @@
-"""Connects a haptic loop to the systems that show and record it."""
+"""Connects a haptic loop to the systems that draw and record it."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm, UnreachableError
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# The path is checked against the workspace at this many points of it.
+# Number of points of the path that are checked against the workspace.
 _PATH_SAMPLES = 200
 
 
@@ -144,7 +144,7 @@ def _sample_handle(scene: Scene, path: HandPath) -> tuple[np.ndarray, np.ndarray
 def _make_arm_twin(
     twin: DeviceImperfections, preset: DevicePreset, period_s: float
 ) -> ArmTwin | None:
-    """Returns the parts of a twin with the preset's figures, None for no parts."""
+    """Returns a twin with the preset's figures; None if it has no parts."""
     if twin == DeviceImperfections():
         return None
     motors = preset.motors
@@ -173,7 +173,7 @@ def _make_arm_twin(
 def _find_figures(
     key: str, given: list[float] | None, known: list[float] | None
 ) -> np.ndarray:
-    """Returns a scene's figures of six motors, or else the preset's."""
+    """Returns the figures of six motors, of the scene or else of the preset."""
     figures = known if given is None else given
     if figures is None:
         raise SceneError(

@@ -1,1 +1,1 @@
-"""Haptic rendering in your own plant."""
+"""Adds haptic rendering to your own plant."""

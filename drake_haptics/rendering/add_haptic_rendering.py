@@ -14,6 +14,7 @@ from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import DiagramBuilder, OutputPort
 
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.rendering.bodies import (
     RenderedBody,
@@ -24,7 +25,7 @@ from drake_haptics.rendering.bodies import (
 )
 from drake_haptics.rendering.checks import (
     check_rendering_stiffness,
-    question_rendered_sizes,
+    make_size_warnings,
 )
 from drake_haptics.rendering.haptic_rendering import HapticRendering
 from drake_haptics.rendering.proxy import check_handle
@@ -61,41 +62,41 @@ def AddHapticRendering(
     name: str = "haptic_rendering",
     progress: Callable[[str, float], None] | None = None,
 ) -> HapticRendering:
-    """Lets a body of a plant touch others by haptic rendering, and connects it.
+    """Adds haptic contact between a body of a plant and others, and connects it.
 
-    The shapes are those that the bodies have in Drake; a `Mesh` keeps its true shape
+    The shapes are those of the bodies in Drake; a `Mesh` keeps its true shape
     (`drake_haptics.geometry.parsing.body_shapes`). The forces go to the plant's port
-    `applied_spatial_force` beside whatever else feeds it (`AddAppliedSpatialForce`).
-    Bodies that are welded to the world are posed once, here, and never read again;
-    bodies that move feel the reaction.
+    `applied_spatial_force`, together with whatever else feeds it
+    (`AddAppliedSpatialForce`). Bodies that are welded to the world are posed once,
+    here, and never read again; bodies that can move feel the reaction.
 
     So that no contact counts twice, a collision filter of the model excludes Drake's
-    own contact between the tool and the environment, in every Context made from then
-    on. Between all other bodies it acts as before.
+    own contact between the tool and the environment, in every Context made afterwards.
+    It still acts between all other bodies.
 
     With `contact.law: constraint`, contact stops a light proxy in the body's place, and
-    what acts on the proxy acts on the body. The spring between the two is as stiff as
-    the plant's step bears (`HapticRendering.proxy_gains`).
+    the forces on the proxy act on the body. The spring between the two is as stiff as
+    the plant's step allows (`HapticRendering.proxy_gains`).
 
-    With a coupling, a spring and damper draw the tool to a handle. The handle is that
-    of `device`, which becomes part of the result. Without a device it is given by the
+    With a coupling, a spring and damper pull the tool to a handle. The handle is that
+    of `device`, which becomes part of the result; without a device it is given by the
     inputs `X_WH` and `V_WH` of the result, whose output `F_Ho_W_commanded` is the
     wrench on the handle.
 
     Args:
-        builder: Builder of the diagram with the plant; not built yet.
+        builder: Builder of the diagram with the plant, not yet built.
         plant: Finalized plant, continuous or discrete.
         scene_graph: Scene graph of the plant.
         tool_body: Body that is the tool, or its name or `model::name`.
-        environment: Bodies that the tool meets. Defaults to all that have shapes, but
-            for those that are rigidly attached to the tool and those whose contact with
-            it the model filters out already.
+        environment: Bodies that the tool meets. Defaults to all that have shapes,
+            except those that are rigidly attached to the tool and those whose contact
+            with it the model already filters out.
         role: Role of the shapes that are used: proximity or illustration.
-        chord_error_m: Largest distance of polytopes from the round shapes that they
-            stand for, m.
+        chord_error_m: Largest distance between round shapes and the polytopes that
+            approximate them, m.
         contact: The law of contact and its parameters.
         materials: Materials of bodies of the environment, by the names of their ports;
-            values that are not given are those of `contact` and `effects`.
+            values that are not given default to those of `contact` and `effects`.
         effects: Effects besides contact. Gravity is the plant's own; passivity control
             needs a device.
         coupling: Gains between a handle and the tool; None for no handle.
@@ -103,11 +104,11 @@ def AddHapticRendering(
         X_HT: Pose of the tool in the handle at rest. Defaults to the identity.
         period_s: Tick of effects with a memory, and of the device, s. Defaults to the
             plant's time step, or 1 ms for a continuous plant. The integrator of a
-            continuous plant takes no longer steps, so that no tool slower than
-            `skin_speed_m_per_s` is in a shape before it is near it.
+            continuous plant takes no longer steps, so that a tool slower than
+            `skin_speed_m_per_s` is always near a shape before it is inside.
         name: Name of the system in the builder.
-        progress: Function that is called while meshes are cut, with the name of the
-            body and the share done, from 0 to 1.
+        progress: Function that is called while meshes are decomposed, with the name of
+            the body and the share done, from 0 to 1.
 
     Returns:
         The system. Its ports are named; see `HapticRendering`.
@@ -115,13 +116,13 @@ def AddHapticRendering(
     Warns:
         SceneWarning: A gain is too stiff for the explicit step of a discrete plant,
             Drake's own contact acts between the tool and bodies that neither this call
-            nor an earlier one renders, or a body is as large as if its mesh were in
-            another unit than meters.
+            nor an earlier one renders, or a body's size suggests that its mesh is not
+            in meters.
 
     Raises:
         ValueError: An argument is invalid; the message names it and says what to do. A
             mesh that cannot be used is a `drake_haptics.geometry.mesh.mesh.MeshError`.
-        TypeError: An argument is of another kind; the message names it.
+        TypeError: An argument has the wrong type; the message names it.
     """
     require_kinds(
         "AddHapticRendering(builder, plant, scene_graph, tool_body) is their order",
@@ -147,10 +148,9 @@ def AddHapticRendering(
         progress=(progress, Callable | None),
     )
     _check_builder(builder, plant, scene_graph, name)
-    if period_s is not None and not period_s > 0.0:
-        raise ValueError(f"period_s must be positive, is {period_s}")
-    if not chord_error_m > 0.0:
-        raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
+    check_positive(chord_error_m=chord_error_m)
+    if period_s is not None:
+        check_positive(period_s=period_s)
     contact, effects = contact or ContactParameters(), effects or Effects()
     materials = materials or {}
     period_s = period_s or plant.time_step() or _DEFAULT_PERIOD_S
@@ -203,7 +203,7 @@ def AddHapticRendering(
     touching = exclude_own_contact(plant, scene_graph, tool, bodies)
     for sentence in [
         *_describe_own_contact(tool, touching),
-        *question_rendered_sizes(rendered_tool, objects, calc_first_touch(contact)),
+        *make_size_warnings(rendered_tool, objects, calc_first_touch(contact)),
         *_check_stiffness(
             rendering, contact, ordered, coupling, plant.time_step() or period_s
         ),
@@ -231,7 +231,7 @@ def _check_stiffness(
 
 
 def _find_rendering(builder: DiagramBuilder, tool: RigidBody, body: RigidBody) -> str:
-    """Returns the name of the rendering in which two bodies meet already, if any."""
+    """Returns the name of an earlier rendering of two bodies, or an empty string."""
     for system in builder.GetSystems():
         if not isinstance(system, HapticRendering):
             continue
@@ -257,7 +257,7 @@ def _check_rendered_once(
 def _check_builder(
     builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph, name: str
 ) -> None:
-    """Refuses all that Drake would refuse, before anything is changed."""
+    """Refuses arguments that Drake would refuse, before anything is changed."""
     if builder.already_built():
         raise ValueError("builder: is built already; call AddHapticRendering before")
     if plant not in builder.GetSystems():
@@ -296,7 +296,7 @@ def _order_materials(
 def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
     """Returns a sentence if Drake's own contact acts on the tool.
 
-    A later call for the same tool may render the others: that cannot be known here.
+    A later call for the same tool may still render the others.
     """
     if not others:
         return []
@@ -310,12 +310,12 @@ def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
 def AddAppliedSpatialForce(
     builder: DiagramBuilder, plant: MultibodyPlant, forces: OutputPort
 ) -> None:
-    """Connects forces to a plant beside those that are connected to it already.
+    """Connects forces to a plant in addition to those already connected.
 
-    Where the plant's port `applied_spatial_force` is free, this is `Connect`. Where
-    something feeds it, such as another `AddHapticRendering`, a thruster, or the mouse
-    of a newer Drake's `AddDefaultVisualization`, that and `forces` go through an
-    `ExternallyAppliedSpatialForceMultiplexer`, and both act.
+    If the plant's port `applied_spatial_force` is free, this is `Connect`. If something
+    already feeds it, such as another `AddHapticRendering`, a thruster, or the mouse of
+    a newer Drake's `AddDefaultVisualization`, both go through an
+    `ExternallyAppliedSpatialForceMultiplexer`.
 
     Args:
         builder: Builder of the diagram with the plant.

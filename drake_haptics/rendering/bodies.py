@@ -30,11 +30,11 @@ class RenderedBody:
     """A body of a plant with its contact pieces.
 
     Attributes:
-        name: Name in the ports: that of the body, with its model instance where two of
-            the rendered bodies have the same name.
-        body: Body of the plant. Its frame is that of the pieces.
+        name: Name in the ports: that of the body, preceded by its model instance if two
+            rendered bodies have the same name.
+        body: Body of the plant, whose frame is that of the pieces.
         pieces: Convex pieces of its shapes.
-        X_WB: Pose of the body in the world, if it is welded to the world; None where it
+        X_WB: Pose of the body in the world, if it is welded to the world; None if it
             can move.
     """
 
@@ -81,11 +81,11 @@ def find_body(plant: MultibodyPlant, body: RigidBody | str, argument: str) -> Ri
 
 
 def find_in_state(body: RigidBody) -> tuple[int, int] | None:
-    """Returns where a plant's state [q; v] has a body's own pose and velocity.
+    """Returns where a plant's state [q; v] holds the pose and velocity of a body.
 
     Returns:
         Indices of the pose (7) [qw qx qy qz x y z] of its frame in the world and of its
-        spatial velocity (6) [ω; v]; None where the body is not free.
+        spatial velocity (6) [ω; v]; None if the body is not free.
     """
     plant = body.GetParentPlant()
     frames = (plant.world_frame().index(), body.body_frame().index())
@@ -106,9 +106,9 @@ def find_environment(
 ) -> list[RigidBody]:
     """Returns all bodies with shapes that a tool can meet.
 
-    Those that are rigidly attached to it are not among them, nor those whose contact
-    with it a collision filter of the model leaves out (Drake does that for bodies
-    that a joint connects).
+    Bodies that are rigidly attached to the tool are left out, and so are those whose
+    contact with it a collision filter excludes (as Drake does for bodies that a joint
+    connects).
     """
     attached = _find_attached(plant, tool)
     return [
@@ -241,11 +241,11 @@ def _is_filtered(
     tool: RigidBody,
     body: RigidBody,
 ) -> bool:
-    """Returns whether the model leaves out contact between the shapes of two bodies."""
+    """Returns whether the model filters out contact between two bodies."""
     pairs = [
         (a, b)
         for a in find_body_geometries(plant, inspector, tool)
         for b in find_body_geometries(plant, inspector, body)
     ]
-    # Bodies that are only drawn have no pairs: no filter leaves them out.
+    # Bodies that are only drawn have no pairs, so no filter excludes them.
     return bool(pairs) and all(inspector.CollisionFiltered(a, b) for a, b in pairs)

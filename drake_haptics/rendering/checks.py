@@ -1,4 +1,4 @@
-"""Finds bodies whose unit or stiffness is probably wrong for haptic rendering."""
+"""Warns of bodies whose unit or stiffness is probably wrong for haptic rendering."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from drake_haptics.bounds.explicit_step import (
 from drake_haptics.geometry.mesh.checks import (
     LARGEST_USUAL_EXTENT_M,
     SMALLEST_USUAL_EXTENT_M,
-    question_tolerance,
+    make_tolerance_warnings,
 )
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
@@ -31,19 +31,19 @@ def check_rendering_stiffness(
     materials: Sequence[Material],
     coupling: CouplingParameters | None,
 ) -> list[str]:
-    """Checks each stiffness by itself on a discrete plant in its default positions.
+    """Checks each stiffness separately on a discrete plant in its default positions.
 
-    Contact is checked at the corners of tool and object where they give way most, one
-    contact at a time; the coupling at the tool's origin.
+    Contact is checked at the vertices of tool and object with the largest mobility, one
+    contact at a time; the coupling is checked at the tool's origin.
 
     Args:
         plant: Plant of the bodies.
         tool: The body that is moved.
         objects: Objects that the tool meets.
         contact: Gains of contact.
-        materials: Material of each object; gains that it does not give are those of
-            `contact`.
-        coupling: Gains between a handle and the tool, if there is one.
+        materials: Material of each object; gains that it does not give default to those
+            of `contact`.
+        coupling: Gains between a handle and the tool; None for no handle.
 
     Returns:
         A sentence for each bound that is broken; empty for a continuous plant.
@@ -101,13 +101,13 @@ def _check_coupling(
     ]
 
 
-def question_rendered_sizes(
+def make_size_warnings(
     tool: RenderedBody, objects: Sequence[RenderedBody], tolerance_m: float
 ) -> list[str]:
-    """Questions the unit of bodies whose size is unlike anything that a hand touches.
+    """Warns of bodies whose size suggests that their mesh is in another unit.
 
-    A file in millimeters that is read as meters is a thousand times too large. An
-    object that the tool meets may be of any large size, as a ground is.
+    A file in millimeters that is read as meters is a thousand times too large. Objects
+    that the tool meets may be as large as a ground plane.
 
     Args:
         tool: The body that is moved.
@@ -115,21 +115,20 @@ def question_rendered_sizes(
         tolerance_m: Distance at which contact begins, m.
 
     Returns:
-        A sentence for each body that is probably in another unit, and one for a
-        tolerance that probably is.
+        A sentence for each body, and for a tolerance, that is probably in another unit.
     """
-    asked = [_question_size("tool_body", tool, LARGEST_USUAL_EXTENT_M)]
-    asked += [_question_size("environment", item, np.inf) for item in objects]
-    asked += question_tolerance(tolerance_m, repr(tool.name), _calc_extent(tool))
+    asked = [_make_size_warning("tool_body", tool, LARGEST_USUAL_EXTENT_M)]
+    asked += [_make_size_warning("environment", item, np.inf) for item in objects]
+    asked += make_tolerance_warnings(tolerance_m, repr(tool.name), _calc_extent(tool))
     return [sentence for sentence in asked if sentence]
 
 
 def _calc_extent(item: RenderedBody) -> float:
-    """Returns the largest side of a body's box, m."""
+    """Returns the longest side of a body's bounding box, m."""
     return float(np.ptp(np.asarray(item.pieces.vertices), axis=0).max())
 
 
-def _question_size(argument: str, item: RenderedBody, largest_m: float) -> str:
+def _make_size_warning(argument: str, item: RenderedBody, largest_m: float) -> str:
     extent_m = _calc_extent(item)
     if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
         return ""

@@ -1,4 +1,4 @@
-"""Configures haptic rendering of a plant by one struct, which YAML can give."""
+"""Configures haptic rendering of a plant by one struct, which can be read from YAML."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -30,15 +30,15 @@ _ROLES = {"proximity": Role.kProximity, "illustration": Role.kIllustration}
 
 @dataclass
 class HapticRenderingConfig:
-    """Arguments of `AddHapticRendering` that a file can hold.
+    """Arguments of `AddHapticRendering` that can be stored in a file.
 
     Attributes:
         tool_body: Name of the body that is the tool, or `model::name`.
         environment: Names of the bodies that the tool meets. Defaults to all that have
             shapes and can meet it.
         role: Role of the shapes that are used, `proximity` or `illustration`.
-        chord_error_m: Largest distance of polytopes from the round shapes that they
-            stand for, m.
+        chord_error_m: Largest distance between round shapes and the polytopes that
+            approximate them, m.
         contact: The law of contact and its parameters.
         materials: Materials of bodies of the environment, by the names of their ports.
         effects: Effects besides contact.
@@ -75,8 +75,8 @@ def load_haptic_rendering_config(path: str | Path) -> HapticRenderingConfig:
         The configuration, with the default of each key that the file leaves out.
 
     Raises:
-        SceneError: The file cannot be read, or has a key or a value that means
-            nothing. The message names the file and the key.
+        SceneError: The file cannot be read, or has an unknown key or an invalid value.
+            The message names the file and the key.
     """
     path = Path(path)
     data = load_yaml(path)
@@ -101,16 +101,16 @@ def ApplyHapticRenderingConfig(
     device: HapticDevice | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> HapticRendering:
-    """Adds haptic rendering as a configuration says, by `AddHapticRendering`.
+    """Calls `AddHapticRendering` with the arguments in a configuration.
 
     Args:
         config: Configuration, made in code or read by `load_haptic_rendering_config`.
-        builder: Builder of the diagram with the plant; not built yet.
+        builder: Builder of the diagram with the plant, not yet built.
         plant: Finalized plant, continuous or discrete.
         scene_graph: Scene graph of the plant.
         device: Device of the handle, not yet in a builder, as from `make_device_port`.
-        progress: Function that is called while meshes are cut, with the name of the
-            body and the share done, from 0 to 1.
+        progress: Function that is called while meshes are decomposed, with the name of
+            the body and the share done, from 0 to 1.
 
     Returns:
         The system. Its ports are named; see `HapticRendering`.
@@ -119,7 +119,7 @@ def ApplyHapticRenderingConfig(
         SceneWarning: One of the reasons that `AddHapticRendering` lists.
 
     Raises:
-        ValueError: A value is impossible, as in `AddHapticRendering`; the message names
+        ValueError: A value is invalid, as in `AddHapticRendering`; the message names
             the key.
     """
     require(config.role in _ROLES, "role", f"must be one of {', '.join(_ROLES)}")

@@ -39,10 +39,10 @@ class HapticRendering(Diagram):
         - V_WT
         - X_WO_<name of each body that moves>
         - V_WO_<name of each body that moves>
-        - X_WP (by the constraint law)
-        - V_WP (by the constraint law)
+        - X_WP (under the constraint law)
+        - V_WP (under the constraint law)
         - contacts
-        - clusters (by the penalty law)
+        - clusters (under the penalty law)
         - contact_wrench
         - F_To_W
         - F_O_W (with bodies that move)
@@ -56,33 +56,33 @@ class HapticRendering(Diagram):
         - applied_spatial_force
 
     * `body_poses`, `body_spatial_velocities`, `state` and `applied_spatial_force`
-      belong to the plant's ports of these names. Contact, coupling and effects read the
-      motion of a free body from the `state`, which takes less time at each tick.
+      connect to the plant's ports of these names. Contact, coupling and effects read
+      the motion of a free body from the `state`, which takes less time per tick.
     * `X_WT` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
       frames in the world, m; `V_WT` and `V_WO_<name>` (6) their spatial velocities
       [ω; v] at the frame's origin in the world, rad/s and m/s.
     * `X_WP` (7) and `V_WP` (6) are the pose and the velocity of the proxy.
-    * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
-      `clusters` a `drake_haptics._core.ClusterSet`.
+    * `contacts` is a `drake_haptics.ContactSet`, shaded with that effect; `clusters` is
+      a `drake_haptics._core.ClusterSet`.
     * `F_To_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
       world, N·m and N, without coupling and effects; `F_O_W` (6 for each body that
-      moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`. By the
-      constraint law all of them are the proxy's, as in `ConstraintToolStep`.
+      moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`. Under
+      the constraint law all of them are the proxy's, as in `ConstraintToolStep`.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show on the handle at its origin in
       the world, N·m and N; `X_WH`, `V_WH`, `F_Ho_W_rendered` and `status` are those of
       `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
       `PassivityControl`.
 
-    By the constraint law contact stops a light proxy in the body's place, and a handle
-    holds the proxy. The body sinks in by its load divided by the stiffness of
+    Under the constraint law contact stops a light proxy in the body's place, and a
+    handle holds the proxy. The body penetrates by its load divided by the stiffness of
     `proxy_gains`. `Simulator.Initialize` puts the proxy where the body is. In a
-    continuous plant the wrenches on the proxy are held for a tick. All else is a
-    function of the plant's state now: there is no sample of delay.
+    continuous plant the wrenches on the proxy are held for a tick. Everything else is a
+    function of the plant's present state, without a sample of delay.
 
-    By the penalty law, above `skin_speed_m_per_s` a step may carry the tool from beyond
-    the tolerance into a shape: contact is found all the same, but as deep as the step
-    has taken the tool. Once a contact is deeper than ten tolerances there is a
-    `drake_haptics.scene.validation.SceneWarning`, the first time only.
+    Under the penalty law, a step of a tool that is faster than `skin_speed_m_per_s` may
+    carry it from beyond the tolerance into a shape. Contact is still found, but as deep
+    as that step has taken the tool. The first contact that is deeper than ten
+    tolerances causes a `drake_haptics.scene.validation.SceneWarning`.
     """
 
     def __init__(
@@ -107,15 +107,15 @@ class HapticRendering(Diagram):
             materials: Material of each object.
             effects: Effects besides contact.
             coupling: Gains between a handle and the tool; None for no handle.
-            device: Device of the handle, not yet in a builder; None where inputs give
-                the handle.
+            device: Device of the handle, not yet in a builder; None if inputs give the
+                handle.
             X_HT: Pose of the tool in the handle at rest.
             period_s: Tick of effects with a memory, and longest step of a continuous
                 plant's integrator, s.
 
         Raises:
-            ValueError: A gain or size is out of range, or an effect or the device
-                lacks what it needs.
+            ValueError: A gain or size is out of range, or an effect or the device lacks
+                something that it needs.
         """
         super().__init__()
         _check_effects(effects, coupling, device)
@@ -161,7 +161,7 @@ class HapticRendering(Diagram):
     def proxy_gains(self) -> CouplingGains | None:
         """Gains of the spring from the body to its proxy; None under the penalty law.
 
-        They are as stiff as the plant's step bears with a margin, given the inertia of
+        They are as stiff as the plant's step allows with a margin, given the inertia of
         the body in the plant's default positions and that of the lightest object:
         `drake_haptics.rendering.proxy.calc_proxy_gains`.
         """
@@ -171,8 +171,8 @@ class HapticRendering(Diagram):
     def skin_speed_m_per_s(self) -> float:
         """Speed at which one step of the plant crosses the contact tolerance, m/s.
 
-        With `contact.query_rate_hz`, one step of the query; of a plant without a time
-        step, `period_s`, which its integrator does not step beyond.
+        With `contact.query_rate_hz` the step is that of the query. For a plant without
+        a time step it is `period_s`, the longest step of its integrator.
         """
         return self._skin_speed_m_per_s
 
@@ -182,7 +182,7 @@ def _check_effects(
     coupling: CouplingParameters | None,
     device: HapticDevice | None,
 ) -> None:
-    """Refuses effects that would do nothing, or would do something wrong."""
+    """Refuses effects that would do nothing or act wrongly."""
     if device is not None and coupling is None:
         raise ValueError(
             "device: needs a coupling to the tool; give coupling=CouplingParameters()"

@@ -1,10 +1,10 @@
-"""The proxy of a plant's body under the constraint law, and the spring that draws it.
+"""The proxy of a plant's body under the constraint law, and the spring that pulls it.
 
 The plant moves the body, and only forces act on it. So contact stops a light proxy in
-the body's place, which a spring draws to the body, and what acts on the proxy acts on
+the body's place, which a spring pulls to the body, and the forces on the proxy act on
 the body (Zilles and Salisbury, "A Constraint-based God-object Method for Haptic
-Display", 1995). That spring is the one stiffness that the plant steps explicitly,
-whatever is touched and however often.
+Display", 1995). That spring is the only stiffness that the plant steps explicitly,
+whatever the tool touches.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def make_proxy_step(
         objects: Objects that the tool meets.
         contact: Contact parameters under the constraint law.
         materials: Material of each object.
-        period_s: The tick: a discrete plant's step, s.
+        period_s: The tick, s; the step of a discrete plant.
         wrench_name: Name of the input of another wrench on the proxy.
     """
     plant = tool.body.GetParentPlant()
@@ -68,8 +68,8 @@ def calc_proxy_gains(mass: float, inertia: float, step_s: float) -> CouplingGain
     """Returns the spring between a body and its proxy: K = m/h².
 
     It stops a mass m at a wall in one step, since the spring's force is taken where the
-    mass would be after the step. That acts as a damper K h beside the spring, which is
-    stable for K <= (4 m - 2 (K h) h)/h², 4/3 of this
+    mass would be after the step. That acts as a damper K h parallel to the spring,
+    which is stable for K <= (4 m - 2 (K h) h)/h², 4/3 of this
     (`drake_haptics.bounds.explicit_step.calc_explicit_stiffness`).
 
     Args:
@@ -87,7 +87,7 @@ def calc_apparent_inertia(
 
     With a spring of K = k m in translation and k I in rotation, the largest eigenvalue
     of K J M⁻¹ Jᵀ is at most k: a symmetric matrix is at most as large as both of its
-    diagonal blocks together, which is why each counts twice. An object that gives way
+    diagonal blocks together, which is why each counts twice. An object that can move
     adds its mobility to the body's.
 
     Args:
@@ -116,11 +116,11 @@ def calc_apparent_inertia(
 def check_handle(
     coupling: CouplingParameters, proxy: CouplingGains, step_s: float
 ) -> list[str]:
-    """Checks that a handle holds a proxy no more stiffly than its body does.
+    """Checks that a handle does not hold a proxy more stiffly than its body does.
 
     Up to a stiffness of 0.9 K and a damping of K h, K being the proxy's, handle, proxy
-    and body are stable together, though both take the pull of the handle as it is at
-    the start of a step.
+    and body are stable together, although both use the force of the handle at the start
+    of a step.
 
     Args:
         coupling: Gains between the handle and the proxy.
@@ -128,7 +128,7 @@ def check_handle(
         step_s: The step h, s.
 
     Returns:
-        A sentence for each gain that is larger.
+        A sentence for each gain that is too large.
     """
     K, K_R = proxy.stiffness_N_per_m, proxy.rotational_stiffness_Nm_per_rad
     most = {

@@ -1,4 +1,4 @@
-"""Adds the parts of a haptic rendering one by one, and connects them by name."""
+"""Builds the diagram of a haptic rendering part by part."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from drake_haptics.systems.plant.body_of_proxy import BodyOfProxy
 from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
-# Effects that push the tool, each with a wrench model of its own.
+# Effects that push the tool by a wrench model.
 _FORCES = ("friction", "braking")
 
 
@@ -38,8 +38,8 @@ class RenderingWiring:
     Attributes:
         builder: Builder of its diagram.
         outputs: Output ports that the rendering will export, by name.
-        proxy_gains: Gains of the spring that draws the tool to its proxy; None under
-            the penalty law.
+        proxy_gains: Gains of the spring between the tool and its proxy; None under the
+            penalty law.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class RenderingWiring:
         objects: Sequence[RenderedBody],
         largest_step_s: float | None,
     ):
-        """Begins with the motion of tool and objects.
+        """Adds the system that reads the motion of tool and objects.
 
         Args:
             tool: The body that is moved.
@@ -68,7 +68,7 @@ class RenderingWiring:
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
         self._asked: OutputPort | None = None
-        # What `AppliedWrenches` computes contact and coupling from, by its inputs.
+        # Inputs of `AppliedWrenches` from which it computes contact and coupling.
         self._chain: dict[str, OutputPort] = {}
         self._chained_at: RigidTransform | None = None
         self._warn_of_depth: Callable[[Context, float, float], None] | None = None
@@ -98,16 +98,16 @@ class RenderingWiring:
         }
 
     def _split_state(self, bodies: Mapping[str, RenderedBody]) -> dict[str, OutputPort]:
-        """Returns the motions of free bodies, as Drake's own system finds them.
+        """Returns the motions of free bodies, split from the plant's state by Drake.
 
-        Python reads the poses of all bodies of a plant to find one, at every tick. A
-        plant's state has that of a free body with a quaternion of any length.
+        To find one pose, Python would read those of all bodies at every tick. In a
+        plant's state the quaternion of a free body may have any length.
 
         Args:
             bodies: Bodies, by the letters of their frames.
 
         Returns:
-            Sources for inputs of their names.
+            Output ports, by the names of the inputs that need them.
         """
         found: list[tuple[int, int, str]] = []
         for frame, item in bodies.items():
@@ -138,7 +138,7 @@ class RenderingWiring:
         materials: Sequence[Material],
         period_s: float,
     ) -> None:
-        """Adds the systems that find contacts and answer them."""
+        """Adds the systems that find contacts and calculate their forces."""
         if is_constraint(contact):
             self._add_proxy(contact, materials, period_s)
             return
@@ -224,10 +224,11 @@ class RenderingWiring:
         X_HT: RigidTransform,
         device: HapticDevice | None,
     ) -> None:
-        """Adds the coupling to a handle: that of a device, or given by inputs.
+        """Adds the coupling to a handle, which a device or inputs give.
 
-        It holds the body that contact stops: the tool under the penalty law, else its
-        proxy. The damper acts on the tool in both cases: a proxy has no mass to damp.
+        The coupling holds the body that contact stops: the tool under the penalty law,
+        otherwise its proxy. The damper always acts on the tool, because a proxy has no
+        mass to damp.
         """
         coupling = self.builder.AddNamedSystem(
             "virtual_coupling", VirtualCoupling(gains, X_HT)
@@ -305,7 +306,7 @@ class RenderingWiring:
             self.outputs |= _name_outputs(added.passivity)
 
     def add_applied_wrenches(self) -> None:
-        """Adds, last, the system that turns all wrenches into forces on bodies."""
+        """Adds the last system, which turns all wrenches into forces on bodies."""
         applied = self.builder.AddNamedSystem(
             "applied_wrenches",
             AppliedWrenches(
@@ -320,7 +321,7 @@ class RenderingWiring:
         self.outputs["applied_spatial_force"] = applied.get_output_port()
 
     def _push_tool(self, name: str, wrench_model: OutputPort) -> None:
-        """Counts the wrench (6) of a wrench model (78) among those on the tool."""
+        """Adds the wrench (6) of a wrench model (78) to those on the tool."""
         system = self.builder.AddNamedSystem(
             f"{wrench_model.get_system().get_name()}_wrench", Demultiplexer([6, 72])
         )

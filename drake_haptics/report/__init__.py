@@ -1,1 +1,1 @@
-"""Tables, labels and paths of reports, whatever they report on."""
+"""Writes tables, pages, plot labels and plain data of reports."""

@@ -1,13 +1,14 @@
-"""Tables, and pages in one file that any browser shows."""
+"""Writes tables, and HTML pages in one file."""
 
 from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from drake_haptics.common.errors import HapticsError
 
@@ -20,16 +21,27 @@ class Table:
     """Text in rows and columns.
 
     Attributes:
-        title: Subject of the table, a line.
-        note: Explanation of the table, some sentences.
+        title: Subject of the table, one line.
+        note: Explanation of the table, in sentences.
         header: Heading of each column.
-        rows: Rows as long as the header; the first cell says what the row is.
+        rows: Rows as long as the header, which begin with a name.
     """
 
     title: str
     note: str
     header: tuple[str, ...]
     rows: list[tuple[str, ...]]
+
+    @staticmethod
+    def of(
+        title: str,
+        note: str,
+        columns: Mapping[str, Callable[[Any], str]],
+        items: Iterable[Any],
+    ) -> Table:
+        """Returns a table with a row for each item, its columns by their headings."""
+        rows = [tuple(text(item) for text in columns.values()) for item in items]
+        return Table(title, note, tuple(columns), rows)
 
     def to_markdown(self) -> str:
         """Returns the table as a section of a Markdown page."""
@@ -45,7 +57,7 @@ def _row(cells: tuple[str, ...]) -> str:
 
 
 def check_page_path(path: Path) -> None:
-    """Checks that page and picture are two files.
+    """Checks that page and picture are different files.
 
     Raises:
         HapticsError: The path has the picture's suffix.
@@ -58,7 +70,7 @@ def check_page_path(path: Path) -> None:
 
 
 def draw_png(figure: Figure, dpi: int = 110) -> bytes:
-    """Returns a figure as PNG of that many dots per inch."""
+    """Returns a figure as PNG with a resolution in dots per inch."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=dpi)
     return stream.getvalue()

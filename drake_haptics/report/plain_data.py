@@ -1,4 +1,4 @@
-"""Turns figures into plain data for JSON, and back."""
+"""Converts figures to plain data for JSON, and back."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import numpy as np
 
 _Figures = TypeVar("_Figures")
 
-# These words stand for numbers that JSON lacks.
+# Words for numbers that JSON lacks.
 _NUMBERS = {"infinite": math.inf, "-infinite": -math.inf, "none": math.nan}
 
 
 def to_plain_data(
     value: Any, replace: Callable[[float], str | None] = lambda number: None
 ) -> Any:
-    """Returns numbers, words, lists and dicts only, ready for JSON.
+    """Returns only numbers, strings, lists and dicts, ready for JSON.
 
     Dataclasses become dicts, and arrays and tuples lists.
 
@@ -41,17 +41,17 @@ def to_plain_data(
 
 
 def name_number(number: float) -> str:
-    """Returns the word that stands for an infinite number or NaN."""
+    """Returns the word for an infinite number or NaN."""
     if math.isnan(number):
         return "none"
     return "infinite" if number > 0.0 else "-infinite"
 
 
 def read_figures(kind: type[_Figures], data: Any) -> _Figures:
-    """Returns the dataclass that `dataclasses.asdict` turned into plain data.
+    """Returns the dataclass of plain data that `dataclasses.asdict` made.
 
-    Where a field is a number, null stands for NaN, and the words of `name_number` for
-    their numbers.
+    In a numeric field, null stands for NaN, and the words of `name_number` for their
+    numbers.
     """
     return _read(kind, data)
 

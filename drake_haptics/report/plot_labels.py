@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Bbox
 
 _SIZE = 9
-# Largest distance of a label from its point, and the step between two tries, in pixels.
+# Largest distance of a label from its point, and the step between tries, in pixels.
 _FARTHEST, _STEP = 300, 6
-# Directions that are tried, the first below and left.
+# Directions that are tried, first below and left.
 _DIRECTIONS = tuple(math.radians(225.0 + 15.0 * i) for i in range(24))
-# Room round words, and round framed ones, in pixels.
+# Margins around words, and around framed ones, in pixels.
 _PADDING, _FRAMED_PADDING = 2.0, 8.0
 _RING_SIZE = 15.0
-# From this ratio of the largest to the least on, times are logarithmic.
+# Ratio of the largest to the least from which times are logarithmic.
 _WIDE = 4.0
-# Letters in a line of the legends.
+# Number of letters in a line of the legends.
 _TITLE_WIDTH, _LABEL_WIDTH = 112, 80
 _LEGEND_SIZE = 8
 
@@ -57,9 +57,9 @@ class Label:
 def label_points(axes: Axes, labels: Sequence[Label]) -> None:
     """Writes words near points, each with a line to its point.
 
-    Each label is as near as it can be without leaving the axes or meeting markers,
-    lines or earlier labels; below and left of its point if there is a choice, where a
-    front leaves room. Where there is no such place it meets the least of them.
+    Each label is as near as possible without leaving the axes or overlapping markers,
+    lines or earlier labels; if there is a choice, below and left of its point, where a
+    front leaves room. If there is no such place, it overlaps as little as possible.
 
     Args:
         axes: Axes in a figure whose layout is settled.
@@ -84,11 +84,11 @@ def label_points(axes: Axes, labels: Sequence[Label]) -> None:
 
 @dataclass(frozen=True)
 class _Place:
-    """A place where a label may be, in pixels.
+    """A possible place of a label, in pixels.
 
     Attributes:
         offset: Offset of the middle of its words from the point, in points.
-        box: Box of the words, with room round them.
+        box: Box of the words with a margin.
         leader: Line from the point to the middle.
     """
 
@@ -97,11 +97,11 @@ class _Place:
     leader: Path
 
     def crosses(self, boxes: Sequence[Bbox]) -> bool:
-        """Tells whether the line to the point runs over one of the boxes."""
+        """Returns whether the line to the point crosses one of the boxes."""
         return any(self.leader.intersects_bbox(box, filled=False) for box in boxes)
 
     def is_crossed(self, lines: Sequence[Path]) -> bool:
-        """Tells whether one of the lines runs through the words."""
+        """Returns whether one of the lines crosses the words."""
         return any(line.intersects_bbox(self.box, filled=False) for line in lines)
 
 
@@ -112,7 +112,7 @@ def _choose_place(
     markers: Sequence[Bbox],
     lines: Sequence[Path],
 ) -> _Place:
-    """Returns the first place that meets no label, and the fewest of the rest.
+    """Returns the first place that overlaps no label and as little else as possible.
 
     Hiding a marker or line is worse than a line across a label.
     """
@@ -132,7 +132,7 @@ def _choose_place(
 
 
 def _write(axes: Axes, label: Label) -> Annotation:
-    """Writes a label, which has no place yet."""
+    """Writes a label at no particular place."""
     frame: dict[str, Any] = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none"}
     if label.is_framed:
         frame = {"boxstyle": "round", "fc": "white", "ec": label.color}
@@ -157,9 +157,9 @@ def _write(axes: Axes, label: Label) -> Annotation:
 
 
 def _list_places(axes: Axes, label: Label, note: Annotation) -> Iterator[_Place]:
-    """Yields places of a label within the axes, the nearest first.
+    """Yields places of a label within the axes, nearest first.
 
-    The last of all is on the point, whether the words fit there or not.
+    The last one is on the point, whether the words fit there or not.
     """
     from matplotlib.path import Path
     from matplotlib.text import Text
@@ -204,7 +204,7 @@ def _find_markers(axes: Axes) -> list[Bbox]:
 
 
 def _find_lines(axes: Axes) -> list[Path]:
-    """Returns the lines that are drawn through, in pixels; dotted ones may be met."""
+    """Returns the solid lines, in pixels; labels may overlap dotted ones."""
     from matplotlib.cbook import STEP_LOOKUP_MAP
     from matplotlib.path import Path
 
@@ -219,7 +219,7 @@ def _find_lines(axes: Axes) -> list[Path]:
 
 
 def scale_times(axes: Axes) -> None:
-    """Makes the axis of times logarithmic if they differ much; with plain numbers."""
+    """Makes the axis of times logarithmic if they differ much, with plain numbers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axes.dataLim.intervalx
@@ -233,12 +233,12 @@ def scale_times(axes: Axes) -> None:
 
 
 def add_legends(figure: Figure, axes: Axes, beside: Sequence[str], title: str) -> None:
-    """Puts all names below the panels, where no data are.
+    """Puts legends below the panels, where they hide no data.
 
     Args:
         figure: Figure in a constrained layout.
         axes: Axes whose lines are labeled.
-        beside: Names that stand on the right, in a list of their own.
+        beside: Names that are listed separately, on the right.
         title: Title of the other names, on the left.
     """
     names = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))

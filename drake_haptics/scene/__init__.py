@@ -1,1 +1,1 @@
-"""Scenes: their keys, where they are found, and how they are read and checked."""
+"""Defines, finds, reads and checks scenes."""

@@ -1,4 +1,4 @@
-"""The two laws of contact: the keys that each ignores, and warnings of an overlap."""
+"""Distinguishes the two laws of contact and the keys that each of them reads."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
 
 
 def is_constraint(contact: ContactParameters) -> bool:
-    """Returns whether constraints on the tool's step answer contact, not springs."""
+    """Returns whether contact is constraints on the tool's step, not springs."""
     return contact.law == "constraint"
 
 
@@ -38,8 +38,7 @@ def check_constraint_law(
     """Refuses keys that do nothing under the constraint law.
 
     Raises:
-        SceneError: A key is given that this law does not have; the message says what to
-            do.
+        SceneError: A key is given that this law ignores; the message says what to do.
     """
     asked = {f"effects.{name}": getattr(effects, name) for name in _OF_PENALTY}
     asked["contact.query_rate_hz"] = contact.query_rate_hz
@@ -72,7 +71,7 @@ def require_penalty(contact: ContactParameters, what: str) -> None:
         )
 
 
-def question_overlap(depth_m: float) -> str:
+def make_overlap_warning(depth_m: float) -> str:
     """Returns a warning of an overlap under the constraint law.
 
     Args:

@@ -1,4 +1,4 @@
-"""Device presets: limits, workspace and model of a device, in YAML files."""
+"""Reads device presets: limits, workspace and model of a device, in YAML files."""
 
 from copy import deepcopy
 from dataclasses import dataclass, field
@@ -39,7 +39,7 @@ class Motors:
         encoder_step_rad: Angle per count of the encoder, rad.
         coulomb_friction_Nm: Dry friction torque, N·m.
         peak_torque_Nm: Peak torque, N·m.
-        continuous_torque_Nm: Torque that the motors bear without end, N·m.
+        continuous_torque_Nm: Torque that the motors can sustain, N·m.
     """
 
     joint_per_motor: list[list[float]] = field(default_factory=_make_identity)
@@ -89,9 +89,15 @@ class DevicePreset:
     max_rotational_damping_Nms_per_rad: float | None = None
     motors: Motors = field(default_factory=Motors)
 
+    def __repr__(self) -> str:
+        return (
+            f"DevicePreset({self.description!r}, {self.max_force_N:g} N,"
+            f" {self.max_torque_Nm:g} N·m{'' if self.has_model else ', no model'})"
+        )
+
     @property
     def has_model(self) -> bool:
-        """Tells whether the device can be simulated."""
+        """Whether the device can be simulated."""
         return bool(self.model)
 
     @property
@@ -117,7 +123,7 @@ def list_device_presets() -> dict[str, Path]:
 
 
 def is_preset_file(preset: str) -> bool:
-    """Tells whether a scene's `device.preset` is a file, not a name."""
+    """Returns whether a scene's `device.preset` is a file, not a name."""
     return preset.endswith(_SUFFIXES)
 
 
@@ -132,7 +138,7 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
 
     Raises:
         SceneError: No preset has that name, and the message lists the shipped ones; or
-            the file cannot be read, or has a key or value that means nothing, and the
+            the file cannot be read, or has an unknown key or an invalid value, and the
             message names the file and the key.
     """
     if is_preset_file(name_or_path):
@@ -155,7 +161,7 @@ def _read_once(path: Path) -> DevicePreset:
     return deepcopy(_read(path, (stat.st_mtime_ns, stat.st_size)))
 
 
-# A build asks for the preset in several places, and YAML takes 10 ms to read.
+# A build reads the preset in several places, and YAML takes 10 ms to read.
 @lru_cache(maxsize=16)
 def _read(path: Path, version: object) -> DevicePreset:
     """Reads and checks a preset file."""
@@ -167,7 +173,7 @@ def _read(path: Path, version: object) -> DevicePreset:
         if preset.has_model:
             preset.model = str((path.parent / preset.model).resolve())
             require(
-                Path(preset.model).is_file(), "model", f"is no file: {preset.model}"
+                Path(preset.model).is_file(), "model", f"does not exist: {preset.model}"
             )
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error

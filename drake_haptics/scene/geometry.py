@@ -1,4 +1,4 @@
-"""The meshes of a scene, loaded and cut into convex pieces."""
+"""Loads the meshes of a scene and cuts them into convex pieces."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def cut_scene(
 
     Args:
         scene: Scene that names meshes and methods.
-        known: Tools and objects that are cut already, with their pieces. Whatever would
-            be cut in the same way takes these pieces.
+        known: Tools and objects that are already cut, with their pieces, which are used
+            again for any that would be cut in the same way.
         progress: Function that is called with the name of the object and the share done
             in [0, 1].
 
     Raises:
-        SceneError: A key of a mesh means nothing for it.
+        SceneError: A key does not apply to its mesh.
         MeshError: A mesh cannot be used.
     """
 
@@ -73,7 +73,7 @@ def _describe_cut(item: Tool | EnvironmentObject) -> tuple[object, ...]:
 
 
 def _load_mesh(item: Tool | EnvironmentObject) -> Mesh:
-    """Reads the mesh of an object of a scene, as exactly as the scene asks for."""
+    """Reads the mesh of an object with the accuracy that the scene asks for."""
     if is_model_file(item.mesh):
         chord_error_m = item.chord_error_m or DEFAULT_CHORD_ERROR_M
         mesh = load_model_mesh(

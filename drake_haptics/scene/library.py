@@ -9,7 +9,7 @@ from drake_haptics.common.errors import HapticsError, MeshError, SceneError
 from drake_haptics.common.files import describe_missing
 from drake_haptics.models import FOLDER
 
-# Files that are given for a scene by mistake; any other name may be a scene's.
+# Suffixes of files that are not scenes; any other name may be a scene's.
 _MESH_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".npz")
 
 

@@ -31,7 +31,7 @@ def load_scene(path: str | Path) -> Scene:
         The scene, with paths that no longer depend on the folder.
 
     Raises:
-        SceneError: The file cannot be read, has a key or a value that means nothing,
+        SceneError: The file cannot be read, has an unknown key or an invalid value,
             names a mesh that does not exist, or describes something physically
             impossible. The message names the file and the key.
     """
@@ -55,11 +55,11 @@ def load_scene(path: str | Path) -> Scene:
 def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) -> None:
     """Writes a whole scene, including its defaults.
 
-    Meshes and presets of this package and of Drake are named `package://...`, those
-    below the file's folder relative to it, others by their whole path.
+    Meshes and presets of this package and of Drake are named `package://...`; files
+    below the scene's folder are relative to it, and all others absolute.
 
     Args:
-        scene: Scene from `load_scene`, or one with paths like its paths.
+        scene: Scene from `load_scene`, or one with absolute paths like it.
         path: Path of the file, which is replaced.
         comments: Comment lines at the head of the file.
 

@@ -10,10 +10,12 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 
+from drake_haptics.common.one_line import one_line
+
 
 @dataclass(slots=True)
 class Material:
-    """Contact properties of an object; values that are not given are the scene's.
+    """Contact properties of an object, which default to those of the scene.
 
     Attributes:
         stiffness_N_per_m: Stiffness of contact with the object, N/m, in place of
@@ -51,9 +53,9 @@ class FrictionParameters:
     """Stick-slip friction.
 
     Attributes:
-        coefficient: Ratio of friction to normal force, for all objects whose material
-            gives none.
-        break_away_m: Distance that a sticking contact gives way before it slips, m.
+        coefficient: Ratio of friction to normal force for all objects whose material
+            does not give one.
+        break_away_m: Displacement of a sticking contact before it slips, m.
     """
 
     coefficient: float = 0.3
@@ -128,7 +130,7 @@ class Effects:
 
 @dataclass(slots=True)
 class EncoderParameters:
-    """Encoders on the motors: the loop sees counted angles, not the true ones.
+    """Encoders on the motors: the loop sees counted angles, not true ones.
 
     Attributes:
         step_rad: Angle of a motor after its gear per count of its encoder, six numbers,
@@ -235,11 +237,11 @@ class Tool:
             see `drake_haptics.geometry.mesh.decimation.decimate`. Defaults to all
             triangles.
         chord_error_m: Largest distance between a model's round shapes and the polytopes
-            that stand for them, m. Defaults to 1e-4.
+            that approximate them, m. Defaults to 1e-4.
         decomposition: Method that cuts the mesh into convex pieces, one of those of
             `drake_haptics.geometry.decomposition.decompose.decompose`.
-        decomposition_error_m: Distance that a piece may depart from the mesh, m; for
-            `merged`, and only there.
+        decomposition_error_m: Largest distance between a piece and the mesh, m; only
+            for `merged`.
         mass_kg: Mass of the tool, kg.
         grasp: X_HT, the pose of the tool's frame in the handle's.
     """
@@ -254,6 +256,8 @@ class Tool:
     mass_kg: float = 0.1
     grasp: Pose = field(default_factory=Pose)
 
+    __repr__ = one_line
+
 
 @dataclass(slots=True)
 class EnvironmentObject:
@@ -266,10 +270,10 @@ class EnvironmentObject:
         center: Whether the mesh is centered, as for the tool; `pose` then places the
             middle.
         max_triangles: Largest number of triangles, as for the tool.
-        chord_error_m: Largest distance of polytopes from round shapes, m, as for the
-            tool.
+        chord_error_m: Largest distance between round shapes and polytopes, m, as for
+            the tool.
         decomposition: Method that cuts the mesh into convex pieces, as for the tool.
-        decomposition_error_m: Distance that a piece may depart from the mesh, m, as for
+        decomposition_error_m: Largest distance between a piece and the mesh, m, as for
             the tool.
         pose: X_WO, the pose of the object's frame in the world.
         material: Material of the object.
@@ -286,13 +290,15 @@ class EnvironmentObject:
     pose: Pose = field(default_factory=Pose)
     material: Material = field(default_factory=Material)
 
+    __repr__ = one_line
+
 
 @dataclass(slots=True)
 class ContactParameters:
     """Parameters of the contact query and of the contact force.
 
-    There are two laws. `constraint` reads `skin_m` alone; all other keys belong to
-    `penalty`. A scene can give the keys of both, and `law` chooses.
+    There are two laws. `constraint` reads only `skin_m`; all other keys belong to
+    `penalty`. A scene may give the keys of both, and `law` chooses.
 
     Attributes:
         law: Name of the law: `penalty`, by which springs and dampers push surfaces
@@ -306,19 +312,19 @@ class ContactParameters:
             t).
         stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
-        clustering: Method that makes few contacts of many: `shared`, which is
+        clustering: Method that reduces many contacts to few: `shared`, which is
             continuous, or `octree`, the paper's.
         cluster_size_m: Distance below which contacts count as one, m (the paper's δ);
-            for `octree`, and only there.
-        depth: Penetration depth of two pieces in overlap: `tracked`, along the way out
-            that is nearest to the last one, which does not pop through a thin plate, or
-            `global`, the least of all, which costs more.
+            only for `octree`.
+        depth: Penetration depth of two overlapping pieces: `tracked`, along the way out
+            nearest to the last one, which does not pop through a thin plate, or
+            `global`, the least of all, which takes more time.
         max_walk_steps: Bound on the steps from feature to feature in the search for a
-            way out (the paper's maximum number of iterations), at least 1. Where it
-            ends a search, the depth may be too large, never too small.
-        query_rate_hz: Rate at which contacts are searched for, Hz; in between they are
-            carried along with the bodies. It is `device.rate_hz` divided by a whole
-            number. Defaults to every tick.
+            way out (the paper's maximum number of iterations), at least 1. If it ends a
+            search, the depth may be too large, but never too small.
+        query_rate_hz: Rate at which contacts are searched for, Hz; in between they move
+            with the bodies. It must be `device.rate_hz` divided by a whole number.
+            Defaults to every tick.
     """
 
     law: str = "penalty"
@@ -337,8 +343,8 @@ class ContactParameters:
 class CouplingParameters:
     """The spring and damper between the handle and the tool.
 
-    The device feels at most this stiffness, whatever the contact's. The defaults
-    are stable on the shipped device, with and without a hand.
+    The device feels at most this stiffness, whatever the contact's. The defaults are
+    stable on the shipped device, with and without a hand.
 
     Attributes:
         stiffness_N_per_m: Force per meter between handle and tool, N/m.
@@ -367,18 +373,19 @@ class DeviceParameters:
             handle of a device that is not simulated then begins where the path does.
         rate_hz: Ticks per second of the haptic loop, Hz.
         servo_rate_hz: Rate at which contact is solved and the tool stepped, Hz;
-            `rate_hz` times a whole number. It is more than `rate_hz` only for
-            `contact.law: constraint`, and for a simulated device or one behind
-            `udp://`, whose servo does it on a thread. Defaults to every tick.
-        tick_budget_us: Time that the work of a tick may take, µs. Where ticks take
-            longer, drawing stops, then contacts are searched for less far, then fewer
-            push (docs/troubleshooting.md). Defaults to no budget: nothing is dropped.
+            `rate_hz` times a whole number. It may exceed `rate_hz` only for
+            `contact.law: constraint` with a simulated device or one behind `udp://`,
+            whose servo runs on a thread. Defaults to every tick.
+        tick_budget_us: Time that the work of a tick may take, µs. While ticks take
+            longer, drawing stops, then contacts are searched for over shorter
+            distances, then fewer push (docs/troubleshooting.md). Defaults to no budget:
+            nothing is dropped.
         max_force_N: Largest force shown, N. Defaults to the preset's. The coupling
-            presses the tool with no more; at 0 no force is shown, and the tool is
-            pressed without limit.
+            presses the tool with at most this force; at 0 no force is shown, and the
+            tool is pressed without limit.
         max_torque_Nm: Largest torque shown, N·m. Defaults to the preset's. The coupling
-            turns the tool with no more; at 0 with no more than the torque of the
-            largest force at 5 cm.
+            turns the tool with at most this torque; at 0, with at most the torque of
+            the largest force at 5 cm.
         twin: Imperfections of the simulated device.
     """
 
@@ -395,6 +402,8 @@ class DeviceParameters:
     def wrench_period_s(self) -> float:
         """Period at which the wrench that the device shows is computed, s."""
         return 1.0 / (self.servo_rate_hz or self.rate_hz)
+
+    __repr__ = one_line
 
 
 @dataclass(slots=True)
@@ -426,6 +435,8 @@ class HandPathParameters:
     periodic: bool = False
     waypoints: list[Waypoint] = field(default_factory=list)
 
+    __repr__ = one_line
+
 
 @dataclass(slots=True)
 class HandParameters:
@@ -440,6 +451,8 @@ class HandParameters:
 
     grip: str = "nominal"
     path: HandPathParameters = field(default_factory=HandPathParameters)
+
+    __repr__ = one_line
 
 
 @dataclass(slots=True)

@@ -30,8 +30,8 @@ def change_scene(scene: Scene, settings: Iterable[str]) -> Scene:
     Args:
         scene: Scene to start from; it is not changed.
         settings: Settings KEY=VALUE, see `parse_setting` and `change_values`. The scene
-            is checked after all of them: of two that need each other either may be
-            first. The path of a mesh or a preset is relative to the current folder.
+            is checked after all of them, so that their order does not matter. The path
+            of a mesh or a preset is relative to the current folder.
 
     Raises:
         SceneError: A setting is not of that form, its key is unknown, its file does not
@@ -53,7 +53,7 @@ def parse_setting(setting: str) -> tuple[str, Any]:
     if not equals:
         raise SceneError(f"{setting}: is not of the form KEY=VALUE")
     try:
-        return key, json.loads(text)  # of 1e-3 PyYAML makes a text
+        return key, json.loads(text)  # PyYAML reads 1e-3 as a string
     except ValueError:
         pass
     try:
@@ -69,11 +69,11 @@ def change_values(scene: Scene, changes: Iterable[tuple[str, Any]]) -> Scene:
         scene: Scene to start from; it is not changed.
         changes: Keys as messages name them (`contact.stiffness_N_per_m`,
             `environment[0].pose.position_m`), without an index in each entry of a list
-            (`environment.scale`); and their values, plain data. A key with None is
-            taken out, so that its default holds, and an effect is gone.
+            (`environment.scale`); and their values, plain data. None removes a key, so
+            that its default holds, or an effect is left out.
 
     Raises:
-        SceneError: A key is unknown, or a value is not of its kind.
+        SceneError: A key is unknown, or a value has the wrong type.
     """
     data = _drop_none(dataclasses.asdict(scene))
     for key, value in changes:
@@ -94,14 +94,14 @@ def list_setting_keys() -> tuple[str, ...]:
 
 
 def _drop_none(data: Any) -> Any:
-    """Returns data as a scene file has them, without the keys that are None."""
+    """Returns data as in a scene file, without the keys that are None."""
     if isinstance(data, dict):
         return {k: _drop_none(v) for k, v in data.items() if v is not None}
     return list(map(_drop_none, data)) if isinstance(data, list) else data
 
 
 def _set(place: Any, steps: Sequence[str | int], value: Any, key: str) -> None:
-    """Sets the value at some steps, and makes missing mappings on the way.
+    """Sets the value at a path of keys and indices, and makes missing mappings.
 
     Raises:
         SceneError: There is no such place.
@@ -141,13 +141,13 @@ def _split(key: str) -> list[str | int]:
 
 
 def _make_hint(key: str) -> str:
-    """Returns the keys that were probably meant, or where to find all of them."""
+    """Returns the keys that were probably meant, or where all are listed."""
     known = list_setting_keys()
-    # People leave out the part, and several parts may have such a key.
+    # Users often leave out the part, and several parts may have the key.
     near = [name for name in known if name.endswith(f".{key}")]
     near = near or difflib.get_close_matches(key, known, n=1)
     if not near:
-        return "docs/reference/every-key.yaml has all"
+        return "docs/reference/every-key.yaml lists all keys"
     return f"did you mean {' or '.join(map(repr, near))}?"
 
 

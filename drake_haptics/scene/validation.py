@@ -44,11 +44,11 @@ _DEEP = 10.0
 
 
 class SceneWarning(UserWarning):
-    """Warns of a scene that can be used but may not do what is wanted."""
+    """Warns of a scene that can be used but may not do what the user intends."""
 
 
 def warn_caller(sentence: str) -> None:
-    """Issues a `SceneWarning` that names the line which called this package.
+    """Issues a `SceneWarning` at the line that called this package.
 
     Args:
         sentence: Text of the warning.
@@ -64,7 +64,7 @@ def check_values(scene: Scene) -> None:
     """Checks that a scene describes something physically possible.
 
     Raises:
-        SceneError: A value is out of its range.
+        SceneError: A value is out of range.
     """
     require(bool(scene.tool.mesh), "tool.mesh", "is missing")
     require_all_positive(scene.tool, "tool", ["mass_kg"])
@@ -113,10 +113,10 @@ def check_rendering(
     effects: Effects,
     coupling: CouplingParameters | None,
 ) -> None:
-    """Checks the parts of a scene with which a body of a plant is rendered.
+    """Checks the parameters with which a body of a plant is rendered.
 
     Raises:
-        SceneError: A value is out of its range, or does nothing under this law.
+        SceneError: A value is out of range, or has no effect under this law.
     """
     _check_contact(contact)
     _check_effects(effects)
@@ -137,7 +137,7 @@ def check_rendering(
 
 
 def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
-    """Checks how the shape of an object is read and how exact it is."""
+    """Checks how the shape of an object is read, and its accuracy."""
     require_all_positive(item, where, ["scale", "chord_error_m"])
     require(
         item.max_triangles is None or item.max_triangles >= 4,
@@ -160,7 +160,7 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
 
 
 def _check_contact(contact: ContactParameters) -> None:
-    """Checks how contact is found and answered."""
+    """Checks the parameters of contact."""
     _require_known(contact.law, LAWS, "contact.law")
     require_all_positive(
         contact, "contact", ["skin_m", "stiffness_N_per_m", "cluster_size_m"]
@@ -379,7 +379,8 @@ def _require_known(word: str, known: Collection[str], where: str) -> None:
 def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
     """Returns the speed at which one step crosses the tolerance, m/s.
 
-    The speed is infinite under the constraint law, whose step sees as far as it moves.
+    The speed is infinite under the constraint law, whose step finds all that it can
+    reach.
 
     Args:
         contact: Law, tolerance and query rate.
@@ -390,11 +391,10 @@ def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
     return contact.tolerance_m * (contact.query_rate_hz or 1.0 / period_s)
 
 
-def question_depth(depth_m: float, tolerance_m: float) -> str:
+def make_depth_warning(depth_m: float, tolerance_m: float) -> str:
     """Returns a warning of a contact that is deeper than ten tolerances.
 
-    Without a tolerance there is no scale for the depth, and no warning: surfaces push
-    only where they overlap.
+    Without a tolerance there is no scale for the depth, and thus no warning.
 
     Args:
         depth_m: Depth of the deepest contact, m; not positive if none penetrates.

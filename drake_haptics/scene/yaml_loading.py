@@ -50,7 +50,7 @@ def _refuse_repeated_keys(path: Path, tree: yaml.Node | None) -> None:
     seen = set()
     while left:
         where, node = left.pop()
-        # An alias is the node that it names.
+        # An alias is the same node as its anchor.
         if id(node) in seen:
             continue
         seen.add(id(node))
@@ -82,7 +82,7 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
 
     Raises:
         SceneError: A key is unknown, and the message names the nearest known one; or a
-            value is of the wrong kind.
+            value has the wrong type.
     """
     arguments = typing.get_args(schema)
     if type(None) in arguments:
@@ -135,7 +135,7 @@ def _check_scalar(schema: Any, data: Any, where: str) -> None:
     found = reprlib.repr(data)
     if schema is float:
         try:
-            # YAML 1.1 reads 1e3 as a text; Drake converts it, and so do we.
+            # YAML 1.1 reads 1e3 as a string; Drake converts it, and so do we.
             finite = not isinstance(data, bool) and math.isfinite(float(data))
         except (TypeError, ValueError):
             finite = False
@@ -146,4 +146,4 @@ def _check_scalar(schema: Any, data: Any, where: str) -> None:
     elif schema is bool and not isinstance(data, bool):
         raise SceneError(f"{where}: expected true or false, found {found}")
     elif schema is str and not isinstance(data, str):
-        raise SceneError(f"{where}: expected a text, found {found}")
+        raise SceneError(f"{where}: expected text, found {found}")

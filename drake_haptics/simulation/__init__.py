@@ -1,6 +1,6 @@
 """Runs a haptic loop, measures it, and changes it while it runs.
 
-The names are imported when they are first asked for.
+The names are imported on first use.
 """
 
 import lazy_loader

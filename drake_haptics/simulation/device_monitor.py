@@ -1,4 +1,4 @@
-"""Watches a device during a run: its faults, its largest loads, its return."""
+"""Watches a device during a run: its faults, recoveries and largest loads."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from drake_haptics.device.backend import (
     GateState,
 )
 
-# A driver that has said nothing for so long is not merely late.
+# A driver that has sent nothing new for this long is not merely late.
 SILENT_S = 1.0
 
 
 class SilenceMonitor:
-    """Time since a device's driver last said something new."""
+    """Measures the time since a device's last new reading."""
 
     def __init__(self) -> None:
         self._sequence: int | None = None
         self._silent_s = 0.0
 
     def add(self, reading: DeviceReading | None, passed_s: float) -> float:
-        """Looks at the newest reading.
+        """Adds the newest reading.
 
         Args:
             reading: Newest reading; None before the first.
-            passed_s: Time since the last look, s.
+            passed_s: Time since the last call, s.
 
         Returns:
-            Time for which it has been the same, s; less than `SILENT_S` need not be
-            told.
+            Time for which the reading has been the same, s. Less than `SILENT_S` is
+            normal.
         """
         sequence = None if reading is None else reading.sequence
         is_new = sequence != self._sequence
@@ -45,18 +45,18 @@ class SilenceMonitor:
 class DeviceWatch:
     """Records a device's faults and its largest loads.
 
-    A device at fault shows no force until somebody asks for it again: it must
-    not surprise the person who holds it.
+    A device at fault shows no force until someone requests it, because it must not
+    surprise the person who holds it.
 
     Args:
         backend: The device, open.
-        should_recover: Function that tells, while the device is at fault, whether to
-            take it up again.
+        should_recover: Function that returns, while the device is at fault, whether to
+            request recovery.
     """
 
     def __init__(self, backend: DeviceBackend, should_recover: Callable[[], bool]):
         self._backend = backend
-        self._wants_it_back = should_recover
+        self._should_recover = should_recover
         self._fault = Fault.NONE
         self._faults: Counter[str] = Counter()
         self._recoveries = 0
@@ -65,7 +65,7 @@ class DeviceWatch:
         self._max_torque_Nm = 0.0
 
     def end_tick(self, _context: object = None) -> None:
-        """Looks at the device; made to be called after every tick."""
+        """Reads the device; to be called after every tick."""
         reading = self._backend.read()
         if reading is None:
             return
@@ -76,7 +76,7 @@ class DeviceWatch:
         if fault != self._fault:
             self._note(fault)
             return
-        if fault != Fault.NONE and not self._asked and self._wants_it_back():
+        if fault != Fault.NONE and not self._asked and self._should_recover():
             self._asked = True
             self._backend.recover()
 
@@ -86,19 +86,19 @@ class DeviceWatch:
             self._recoveries += 1
         else:
             self._faults[fault.name] += 1
-            # A request from before the fault was for something else.
-            self._wants_it_back()
+            # A request from before the fault does not count.
+            self._should_recover()
         self._fault, self._asked = fault, False
 
     def to_dict(self) -> dict[str, object]:
         """Returns the figures for a report, ready for JSON.
 
-        Keys: `gate` (the last state), `fault` (that it ended at, `NONE` if at none),
-        `faults` (how often, by kind), `recoveries`,
-        `max_force_N` and `max_torque_Nm` (that the device said it showed), `received`,
-        `lost` and `rejected` (readings), `servo_lateness_us` (of the backend's own
-        thread, `p50`, `p99`, `p99_9`; empty where it has none), `solved` and
-        `solved_late` (how often that thread solved contact, and was late with it).
+        Keys: `gate` (the last state), `fault` (the last fault, or `NONE`), `faults`
+            (how often, by kind), `recoveries`, `max_force_N` and `max_torque_Nm` (as
+            the device reported them), `received`, `lost` and `rejected` (readings),
+            `servo_lateness_us` (of the backend's thread, `p50`, `p99`, `p99_9`; empty
+            without one), `solved` and `solved_late` (how often that thread solved
+            contact, and how often late).
         """
         link, reading = self._backend.get_link_status(), self._backend.read()
         late_us = [1e6 * late_s for late_s in link.lateness_s or ()]

@@ -15,7 +15,7 @@ from drake_haptics.systems.contact.penalty_force import ContactGains
 
 
 class EnergyLedger:
-    """Books the energy that goes through each part of a loop, tick by tick.
+    """Accounts for the energy that flows through each part of a loop, tick by tick.
 
     ::
 
@@ -26,17 +26,17 @@ class EnergyLedger:
         simulator.AdvanceTo(10.0)
         print(ledger.to_dict()["device"])
 
-    The parts, in a row: `display` (what the device does to the wrench: limits, hold;
-    and passivity control), `coupling`, `tool`, and each source of wrench on the tool
-    by the name of its port (`contact`, `friction`, `braking`, `gravity`). What goes
-    out of one goes into its neighbor. `device` is all of them together, as the hand
-    has them at the device's port. How a tick is booked, and what the sampling of a
-    force can seem to create, is derived in `core/tool/tick_energy.h`.
+    The parts form a chain: `display` (limits and hold of the device, and passivity
+    control), `coupling`, `tool`, and each source of a wrench on the tool by the name of
+    its port (`contact`, `friction`, `braking`, `gravity`). The energy that leaves one
+    enters its neighbor. `device` is all of them together, as seen at the device's port.
+    `core/tool/tick_energy.h` derives the energy of a tick, and how much the sampling of
+    a force can seem to create.
 
-    Objects are taken to stand still: the work of a moving one on the tool shows as
-    created by the source of the force. Where gains are changed in the context, the tick
-    that begins with them is left out of the books, and so is the energy that the change
-    puts into springs or takes out.
+    Objects are assumed to stand still: the work of a moving object on the tool appears
+    as energy created by the source of the force. When gains are changed in the context,
+    the tick that begins with them is left out, and so is the energy that the change
+    adds to springs or removes from them.
     """
 
     def __init__(self, loop: HapticLoop, root: Context):
@@ -44,7 +44,7 @@ class EnergyLedger:
 
         Args:
             loop: Return value of `AddHapticLoop`.
-            root: Context of the diagram that holds it, where it is read.
+            root: Root context of the diagram that contains the loop.
         """
         sources = dict(loop.wrench_sources)
         coupling = sources.pop("coupling")
@@ -75,11 +75,11 @@ class EnergyLedger:
         )
 
     def add(self) -> None:
-        """Books the tick since the last call; the first one only begins.
+        """Adds the tick since the last call; the first call only begins one.
 
-        To be called at the start, after `Simulator.Initialize`, and after every tick,
-        before the next one, as a monitor is. All that it reads is what the next tick
-        will need, so that it costs nothing twice.
+        Call it once after `Simulator.Initialize` and then after every tick, as from a
+        monitor. The next tick needs everything that it reads, so that nothing is
+        computed twice.
         """
         gains = self._read_gains()
         if gains != self._gains:
@@ -95,21 +95,21 @@ class EnergyLedger:
         )
 
     def to_dict(self) -> dict[str, dict[str, float]]:
-        """Returns the books so far, by the name of the part, ready for JSON.
+        """Returns the energies so far, by the name of the part, ready for JSON.
 
         Each has, in J:
 
-        * `in`, `out`: what went into the part and what came out of it, through all its
-          ports; `net`, the difference. For `device`, `in` is what the hand put in.
-        * `stored`: what it holds now: the spring of the coupling, the compressed
-          contacts, the tool's kinetic energy, the tool's height.
-        * `lost`: `net` less what `stored` has grown by; of that, `damped` by dampers.
-          The rest is slip, and what the implicit step takes.
-        * `created`: energy from nothing. What is lost never comes back, so it is the
-          largest fall of `lost` over any stretch of time.
-        * `bound`: how much of that the sampling of forces explains.
-        * `beyond`: the most that was created over any stretch of time beyond what
-          sampling explains there. More than rounding is a force that makes energy.
+        * `in`, `out`: energy into and out of the part through all its ports; `net`:
+          their difference. For `device`, `in` comes from the hand.
+        * `stored`: the energy that it holds now, in the spring of the coupling,
+          compressed contacts, or the tool's speed and height.
+        * `lost`: `net` minus the increase of `stored`; `damped` is the part that
+          dampers take. Slip and the implicit step take the rest.
+        * `created`: energy from nothing, which is the largest decrease of `lost` over
+          any interval, since lost energy never comes back.
+        * `bound`: the part of it that the sampling of forces explains.
+        * `beyond`: the most energy created over any interval beyond what sampling
+          explains. More than round-off means that a force creates energy.
         """
         return {
             name: {
@@ -134,9 +134,9 @@ def _reader(port: OutputPort, root: Context) -> Callable[[], Any]:
 
 
 class _Gains(NamedTuple):
-    """The gains in a context whose change changes the energy of springs.
+    """The gains in a context that determine the energy of springs.
 
-    Contact has none under `contact.law: constraint`.
+    Contact has no gains under `contact.law: constraint`.
     """
 
     coupling: _core.CouplingGains
@@ -164,7 +164,7 @@ def _make_gains_reader(loop: HapticLoop, root: Context) -> Callable[[], _Gains]:
 def _make_stored_readers(
     loop: HapticLoop, root: Context, get_gains: Callable[[], _Gains]
 ) -> dict[str, Callable[[], float]]:
-    """Returns functions of the energy (J) of each source of wrench that stores some."""
+    """Returns a function of the energy (J) of each source that stores some."""
     clusters = _reader(loop.clusters, root)
 
     def contact_energy() -> float:

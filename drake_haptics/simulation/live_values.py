@@ -1,4 +1,4 @@
-"""Changes values of a scene while it runs, at once or without a step of force."""
+"""Changes values of a scene while it runs, at once or gradually."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from drake_haptics.systems.contact.contact_clustering import (
     ClusteringRule,
 )
 
-# Keys of effects: label, unit, and the least and largest value to be offered.
+# Keys of effects: label, unit, smallest and largest value to be offered.
 _OF_EFFECTS = {
     "shading.crease_angle_deg": ("Crease angle", "°", 0.0, 90.0),
     "friction.coefficient": ("Friction coefficient", "", 0.0, 1.0),
@@ -36,7 +36,7 @@ _OF_EFFECTS = {
     ),
 }
 GLIDE_S = 0.2
-"""Time from one value to another, s: what a device's gate takes to let a force in."""
+"""Time from one value to another, s, as long as a device's gate ramps up a force."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ class LiveKey:
 
     Attributes:
         key: Key of the scene file, such as `contact.tolerance_m`.
-        label: A word or two for people.
+        label: Label of one or two words.
         unit: SI unit, or °; empty for a ratio.
-        low: Smallest value to be offered, in that unit; others are valid too.
+        low: Smallest value to be offered; others are valid too.
         high: Largest value to be offered.
         is_logarithmic: Whether equal steps of a slider are equal ratios.
         help: Explanation, from the docstring of its dataclass.
@@ -79,8 +79,9 @@ class LiveKey:
 def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
     """Returns the values of a scene that `write_live_values` writes into a context.
 
-    Of contact these are the keys that no material overrides everywhere, and the cluster
-    size where there are clusters; none under `contact.law: constraint`.
+    A key of contact that the materials of all objects override is left out, and so is
+    the cluster size without an octree; under `contact.law: constraint` contact has
+    none.
     """
     found = [
         _make_key(scene, "coupling.stiffness_N_per_m", "Stiffness", "N/m", 50.0, 5e3),
@@ -122,7 +123,7 @@ def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
 def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
     """Returns the values of the effects that a scene names.
 
-    Another value needs another diagram, as an effect that comes or goes does: see
+    Changing one needs a new diagram, as adding or removing an effect does; see
     `drake_haptics.transfer_context`. A coefficient that every material overrides is
     left out.
     """
@@ -143,7 +144,7 @@ def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
 def _make_key(
     scene: Scene, key: str, label: str, unit: str, low: float, high: float
 ) -> LiveKey:
-    """Returns a key whose range holds the scene's value; from 0 it is linear."""
+    """Returns a key whose range includes the scene's value; from 0 it is linear."""
     *path, name = key.split(".")
     start: Any = scene
     part = reduce(getattr, path, start)
@@ -172,8 +173,8 @@ def _read_attribute_help(schema: type, name: str) -> str:
 def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
     """Writes the live values of a scene into a context.
 
-    They hold from the next tick on, in this context alone. The diagram and its
-    `HapticDiagram.scene` stay as they are.
+    They act from the next tick on, in this context only. The diagram and
+    `HapticDiagram.scene` do not change.
 
     Args:
         haptic: Return value of `BuildHapticDiagram`.
@@ -182,8 +183,8 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
             alone; see `is_live_change`.
 
     Raises:
-        ValueError: It differs in more, and the diagram must be built again; or a value
-            is out of range. The context is as it was.
+        ValueError: The scene differs in more, so that the diagram must be built again,
+            or a value is out of range. The context is unchanged.
     """
     require_kinds(
         "write_live_values(haptic, root, scene) is their order",
@@ -200,9 +201,9 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
 
 
 def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
-    """Writes live values into a context whatever else its diagram was built with.
+    """Writes live values into a context without checking that the rest is the same.
 
-    It is `write_live_values` for values that still glide to those of the diagram.
+    It is `write_live_values` for values that are still on their way to the diagram's.
     """
     contact, loop = scene.contact, haptic.loop
     gains = make_coupling_gains(scene.coupling, loop.device)
@@ -230,11 +231,11 @@ def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
 
 
 def is_live_change(built: Scene, scene: Scene) -> bool:
-    """Returns whether one scene becomes the other without a new diagram.
+    """Returns whether one scene can become the other without a new diagram.
 
-    Live are the keys of `drake_haptics.live_keys` and `contact.clustering`. But where
-    passivity control finds its reserve by itself, the reserve depends on stiffnesses:
-    another one of these needs another diagram.
+    The keys of `drake_haptics.live_keys` and `contact.clustering` are live. The default
+    reserve of passivity control depends on stiffnesses, so that changing these needs a
+    new diagram.
     """
     passivity = scene.effects.passivity
     if (
@@ -273,12 +274,12 @@ def _without_live_values(scene: Scene) -> Scene:
 class LiveValueRamp:
     """Interpolates live values, to be written at each tick.
 
-    A gain that rises by a factor raises a held force by the same factor: written at
-    once it kicks the hand on the device. Here a force changes by no more than a few
-    hundredths of itself in a tick.
+    A larger gain raises a held force by the same factor, which would kick the hand if
+    it were written at once. With this ramp a force changes by at most a few percent per
+    tick.
 
     Attributes:
-        is_moving: Whether a value still glides.
+        is_moving: Whether a value still changes.
     """
 
     def __init__(self, period_s: float):
@@ -298,7 +299,7 @@ class LiveValueRamp:
     def aim(self, scene: Scene) -> None:
         """Begins to interpolate to the values of a scene.
 
-        A value that is new is the scene's at once.
+        A value that was not live before changes at once.
 
         Args:
             scene: Scene with the goal's values.
@@ -332,7 +333,7 @@ class LiveValueRamp:
 def _blend(item: LiveKey, start: float, goal: float, share: float) -> float:
     """Returns the value at a share of the way; gains go in equal ratios.
 
-    A force is proportional to a gain, but grows linearly with a length.
+    A force is proportional to a gain, and linear in a length.
     """
     if start == goal:
         return goal

@@ -1,4 +1,4 @@
-"""Measures the time that each system's own Python takes of a tick, and explains it."""
+"""Measures how much of a tick each system takes, and explains why it is there."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pydrake.systems.framework import Context, Diagram, LeafSystem, System
 from drake_haptics.common.one_line import count
 from drake_haptics.loop.builder import HapticDiagram
 
-# The ways in which a system hands its callbacks to Drake.
+# Methods by which a system passes its callbacks to Drake.
 _DECLARATIONS = (
     "DeclareVectorOutputPort",
     "DeclareAbstractOutputPort",
@@ -25,7 +25,7 @@ _DECLARATIONS = (
     "DeclarePeriodicPublishEvent",
 )
 _MOST_TICKS = 1 << 16
-# In the slowest ticks the computer did something else.
+# In the slowest ticks the computer was busy with something else.
 _MIDDLE_HALF = (0.25, 0.75)
 _WHY = {
     "rendered_force_hold": "always: limits what the device shows",
@@ -50,6 +50,10 @@ _WHY = {
     "tick_log_sink": "a log: notes every tick",
     "haptic_visualizer": "draws the page or the recording",
 }
+# Systems whose work is one call of the core where nothing between them reads contacts.
+_CHAINED = ("haptic_tool", "contact_query", "contact_clustering", "penalty_force")
+CHAIN = "contact_chain"
+_CHAIN_WHY = "always: contacts, force and the tool's step, in one call"
 # For a system that this package does not know.
 _NOT_OURS = "yours: it was added to the loop"
 REST = "Drake and the rest"
@@ -58,10 +62,10 @@ REST = "Drake and the rest"
 class CallbackTimer:
     """Times the callbacks of the systems that are constructed while it is entered.
 
-    Inside its block it stands between `LeafSystem` and Drake wherever a callback is
-    declared; outside, systems are constructed as ever and nothing is measured. A
-    callback's time is its own: the time that it waits for its inputs belongs to the
-    systems that give them. Each call costs about 0.5 µs more::
+    Inside its block it wraps every callback that a `LeafSystem` declares; systems that
+    are constructed outside are not measured. The time of a callback excludes the
+    evaluation of its inputs, which counts for the systems that provide them. Each call
+    takes about 0.5 µs more::
 
         with CallbackTimer() as timer:
             haptic = BuildHapticDiagram(scene)
@@ -85,7 +89,7 @@ class CallbackTimer:
     def __enter__(self) -> CallbackTimer:
         """Begins to time the systems that are constructed.
 
-        Where bindings of Drake do not let it in, only whole ticks are timed, and a
+        If the bindings of Drake do not allow it, only whole ticks are timed, and a
         `RuntimeWarning` says so.
         """
         originals = {name: getattr(LeafSystem, name) for name in _DECLARATIONS}
@@ -104,7 +108,7 @@ class CallbackTimer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Leaves later systems alone."""
+        """Stops timing systems that are constructed later."""
         self._restore()
 
     def _restore(self) -> None:
@@ -112,7 +116,7 @@ class CallbackTimer:
             setattr(LeafSystem, *self._originals.popitem())
 
     def end_tick(self, context: Context) -> None:
-        """Ends a tick; for `run(on_tick=...)`. The first call only begins one."""
+        """Ends a tick, for `run(on_tick=...)`; the first call only begins one."""
         now_s = time.perf_counter()
         if self._start_s > 0.0:
             self._ticks.append((now_s - self._start_s, *self._own_s))
@@ -122,7 +126,7 @@ class CallbackTimer:
     def calc_means(self) -> tuple[dict[System, float], float]:
         """Returns the mean time of each system and of the whole tick, s.
 
-        Both are means over the middle half of the ticks, by their length.
+        Both are means over the middle half of the ticks by duration.
         """
         if not self._ticks:
             return dict.fromkeys(self._systems, 0.0), 0.0
@@ -135,14 +139,14 @@ class CallbackTimer:
     def calc_times(self) -> tuple[dict[System, np.ndarray], np.ndarray]:
         """Returns the time of each system and of the whole, tick by tick, s.
 
-        Each is (n,), of the latest n ticks that ended.
+        Each is (n,), for the latest n ticks.
         """
         ticks = np.array(self._ticks).reshape(-1, 1 + len(self._systems))
         tick_s, *own_s = ticks.T
         return dict(zip(self._systems, own_s, strict=True)), tick_s
 
     def _timed_declaration(self, declare: Callable[..., Any]) -> Callable[..., Any]:
-        """Returns a declaration that takes the callback and declares a timed one."""
+        """Returns a declaration that replaces callbacks by timed ones."""
 
         @wraps(declare)
         def declare_timed(system: System, *args: Any, **kwargs: Any) -> Any:
@@ -161,7 +165,7 @@ class CallbackTimer:
     def _timed(
         self, system: System, callback: Callable[..., Any]
     ) -> Callable[..., Any]:
-        """Returns a callback that notes its own time."""
+        """Returns a callback that measures its time without that of others."""
         if system not in self._systems:
             self._systems.append(system)
             self._own_s.append(0.0)
@@ -187,10 +191,12 @@ class Part:
     """A part of a tick.
 
     Attributes:
-        name: Name of the system in the diagram, or "Drake and the rest".
+        name: Name of the system in the diagram; "contact_chain" for those from the
+            contact query to the tool where the core does their work in one call; or
+            "Drake and the rest".
         system: Class of the system.
-        why: The key of the scene that asks for it, or why it is always there.
-        mean_us: Time of its own, mean of the middle half of the ticks, µs.
+        why: Key of the scene that adds it, or the reason why it is always there.
+        mean_us: Time of its callbacks, mean of the middle half of the ticks, µs.
         share: Share of the whole tick, 0 to 1.
     """
 
@@ -208,9 +214,9 @@ class Part:
 def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
     """Explains a tick of a run.
 
-    A part's time is that of its own Python and of the core it calls. The rest is Drake,
-    which steps the arm's plant, calls the parts and hands values from port to port; and
-    what the run itself notes down.
+    The time of a part is that of its Python code and of the core that this calls. The
+    rest is Drake, which steps the arm's plant, calls the parts and passes values from
+    port to port, and the measurements of the run.
 
     Args:
         haptic: Diagram that was run.
@@ -227,19 +233,37 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
         return Part(name, system, why, 1e6 * seconds, share)
 
     parts = []
-    for system in _list_systems(haptic):
-        name = system.get_name()
-        seconds = sum(own_s.get(leaf, 0.0) for leaf in _list_leaves(system))
+    systems = _list_systems(haptic)
+    chained = _find_chained(haptic)
+    for system in systems:
+        name, kind = system.get_name(), type(system).__name__
+        if name in chained[1:]:
+            continue
+        taken = [system]
         why = _WHY.get(name, _NOT_OURS)
-        parts.append(make_part(name, type(system).__name__, why, seconds))
+        if name in chained:
+            taken = [one for one in systems if one.get_name() in chained]
+            name, kind, why = CHAIN, "ContactChain", _CHAIN_WHY
+        leaves = [leaf for one in taken for leaf in _list_leaves(one)]
+        parts.append(
+            make_part(name, kind, why, sum(own_s.get(leaf, 0.0) for leaf in leaves))
+        )
     rest_s = tick_s - sum(own_s.values())
     why = "always: steps the arm, calls the parts"
     parts.append(make_part(REST, "Simulator", why, rest_s))
     return parts
 
 
+def _find_chained(haptic: HapticDiagram) -> tuple[str, ...]:
+    """Returns the names of the systems whose work is one call of the core."""
+    loop = haptic.loop
+    if loop.penalty is None or not loop.contact_query.HasOutputPort(CHAIN):
+        return ()
+    return _CHAINED
+
+
 def _list_systems(haptic: HapticDiagram) -> list[System]:
-    """Returns the systems of the diagram, those of the device in its place."""
+    """Returns the systems of the diagram, with the device replaced by its parts."""
     systems: list[System] = []
     for system in haptic.diagram.GetSystems():
         is_device = system is haptic.loop.device
@@ -248,7 +272,7 @@ def _list_systems(haptic: HapticDiagram) -> list[System]:
 
 
 def _list_leaves(system: System) -> Iterator[System]:
-    """Yields the systems that a system is made of, itself if it is one."""
+    """Yields the leaf systems in a system, or the system itself if it is one."""
     if not isinstance(system, Diagram):
         yield system
         return

@@ -54,26 +54,27 @@ def replay(
     out: str | os.PathLike[str] | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> TickLog:
-    """Moves the handle as it was recorded, and computes everything else again.
+    """Moves the handle as recorded, and computes everything else again.
 
-    The tool starts where the log has it. In the scene of the log, the same program
-    computes the same to the last bit, up to the first gap of the log. In a scene of
-    another rate the handle stays, from tick to tick of the log, where it was.
+    The tool starts as in the log. In the scene of the log, the same program computes
+    the same values bit for bit, up to the first gap of the log. In a scene with another
+    rate the handle is held between the ticks of the log.
 
     Args:
         log: Return value of `read_tick_log`.
-        scene: Another scene than the log's.
-        out: File for the log of this run; a temporary one if not given.
-        progress: Called with the current work and its share that is done, in [0, 1].
+        scene: Scene to run. Defaults to the log's.
+        out: File for the log of this run. Defaults to a temporary one.
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
 
     Returns:
         The log of this run.
 
     Raises:
-        TickLogError: The log has no first tick or no usable scene, or the loop was
-            left by its values.
-        SceneError: The scene is impossible.
-        MeshError: A mesh cannot be treated.
+        TickLogError: The log has no first tick or no usable scene, or a value is no
+            longer finite.
+        SceneError: The scene is invalid.
+        MeshError: A mesh cannot be used.
         OSError: A file cannot be read or written.
     """
     if out is None:
@@ -110,7 +111,7 @@ def _run(
         if progress is not None:
             progress(f"Cutting {name} into convex pieces", share)
 
-    # Ticks here do not take as long as they took in the recorded run.
+    # The tick times of the recorded run do not matter here.
     unhurried = replace(scene, device=replace(scene.device, tick_budget_us=None))
     haptic = BuildHapticDiagram(
         unhurried, device=device, recorder=recorder, progress=report_cut

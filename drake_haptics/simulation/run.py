@@ -19,8 +19,8 @@ from pydrake.systems.framework import Context, EventStatus
 from drake_haptics.common.real_time import RealTimePacer, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.scene.contact_law import question_overlap
-from drake_haptics.scene.validation import question_depth, warn_caller
+from drake_haptics.scene.contact_law import make_overlap_warning
+from drake_haptics.scene.validation import make_depth_warning, warn_caller
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.statistics import RunStatistics
 
@@ -31,7 +31,7 @@ class RunError(RuntimeError):
     """A run was stopped because a value was no longer finite.
 
     Attributes:
-        statistics: Statistics of the run up to there.
+        statistics: Statistics of the run until then.
     """
 
     def __init__(self, message: str, statistics: RunStatistics):
@@ -68,40 +68,40 @@ def run(
 ) -> RunStatistics:
     """Runs a scene and measures every tick.
 
-    A run can be one of several in a row: with the context in which the last one ended,
-    of the same diagram or carried on to another (`drake_haptics.transfer_context`), and
-    its statistics.
+    A run can continue an earlier one: pass its statistics and the context in which it
+    ended, of the same diagram or transferred to another
+    (`drake_haptics.transfer_context`).
 
     Args:
         haptic: Return value of `BuildHapticDiagram`.
-        duration_s: Simulated time, s; for ever where not given.
-        pace: Waits for each tick, so that simulated time is clock time; a device needs
-            it, and the system is asked for a real-time priority. As fast as it can
-            where not given.
-        energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in each
-            tick. Only of a simulated device: the motion of any other between two
-            readings is not known.
-        on_tick: Called after every tick with the diagram's context, of which it may
-            change parameters alone, as `drake_haptics.simulation.live_values` does.
-            Its time counts in the tick. Where it returns True the run ends.
-        context: Context to go on from, which becomes the simulator's; nothing in it is
-            initialized. Defaults to the scene's start.
-        statistics: Statistics of the runs before, which this one goes on with, or of
-            none yet; its own where not given. It is filled tick by tick, and so holds
-            the ticks that ran also where an error or Ctrl-C ends the run.
+        duration_s: Simulated time, s. Defaults to forever.
+        pace: Pacer that waits for each tick, so that simulated time is clock time; a
+            device needs it. The run then requests real-time priority. Defaults to
+            running as fast as possible.
+        energy: Whether to keep an `EnergyLedger`, which takes about 10 µs per tick.
+            Only for a simulated device: the motion of any other between two readings is
+            unknown.
+        on_tick: Function that is called after every tick with the diagram's context, in
+            which it may change only parameters, as
+            `drake_haptics.simulation.live_values` does. Its time counts as part of the
+            tick. The run ends if it returns True.
+        context: Context to continue from, which becomes the simulator's and is not
+            initialized again. Defaults to the scene's start.
+        statistics: Statistics to add to. Defaults to new ones. They are filled tick by
+            tick, so that they are valid even if an error or Ctrl-C ends the run.
 
     Returns:
         Statistics of the run.
 
     Warns:
-        SceneWarning: A contact was, at the end, deeper than ten tolerances, or under
-            `contact.law: constraint` deep at all, and none was in the runs before.
+        SceneWarning: A contact was deeper than ten tolerances, or under `contact.law:
+            constraint` penetrated at all, for the first time in these statistics.
 
     Raises:
-        ValueError: `duration_s` is negative, `energy` is asked for, but the device is
-            not simulated, or the run goes on with the statistics of others.
+        ValueError: `duration_s` is negative, or `energy` is set but the device is not
+            simulated or the statistics already have ticks.
         RunError: The tool or the arm has a pose or velocity that is not finite.
-        TypeError: An argument is of another kind; the message names it.
+        TypeError: An argument has the wrong type; the message names it.
         KeyboardInterrupt: Ctrl-C was pressed.
     """
     require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
@@ -111,13 +111,13 @@ def run(
         on_tick=(on_tick, Callable | None),
         statistics=(statistics, RunStatistics | None),
     )
-    # Drake ends the whole program for a time before now.
+    # Drake aborts the program if the end time is in the past.
     if duration_s is not None and not duration_s >= 0.0:
         raise ValueError(f"duration_s must not be negative, is {duration_s}")
     if energy and haptic.backend is not None:
-        raise ValueError("energy can be booked for a simulated device only")
+        raise ValueError("energy can be recorded for a simulated device only")
     if energy and statistics is not None and statistics.ticks:
-        raise ValueError("energy can be booked only from the first tick of a run")
+        raise ValueError("energy can be recorded only from the first tick of a run")
     simulator = make_simulator(haptic, context)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     if statistics is None:
@@ -129,8 +129,8 @@ def run(
     if duration_s is not None:
         end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
-    # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
-    # are left alone. What goes on has no time for it.
+    # Collecting garbage over all of pydrake's objects takes many ticks, so they are
+    # frozen. A run that continues another has no time for a collection.
     if context is None:
         gc.collect()
     gc.freeze()
@@ -148,26 +148,24 @@ def run(
         raise RunError(f"stopped at {time_s:.4f} s: {error}", statistics) from error
     finally:
         gc.unfreeze()
-        ask = _make_depth_question(haptic, simulator.get_context())
-        question = ask(statistics.max_penetration_m)
-        if question and not ask(before_m):
-            warn_caller(question)
+        describe = _make_depth_warner(haptic, simulator.get_context())
+        warning = describe(statistics.max_penetration_m)
+        if warning and not describe(before_m):
+            warn_caller(warning)
     return statistics
 
 
-def _make_depth_question(
-    haptic: HapticDiagram, root: Context
-) -> Callable[[float], str]:
-    """Returns a function that questions a depth (m) beyond the law of contact."""
+def _make_depth_warner(haptic: HapticDiagram, root: Context) -> Callable[[float], str]:
+    """Returns a function that warns of a depth (m) beyond the law of contact."""
     penalty = haptic.loop.penalty
     if penalty is None:
-        return question_overlap
+        return make_overlap_warning
     tolerance_m = penalty.read_tolerance(root)
-    return lambda depth_m: question_depth(depth_m, tolerance_m)
+    return lambda depth_m: make_depth_warning(depth_m, tolerance_m)
 
 
 def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float:
-    """Returns the end of a run, s; a tick's time if that is a round-off apart."""
+    """Returns the end time of a run, s, rounded to a tick if round-off apart."""
     end_s = start_s + duration_s
     tick_s = round(end_s / haptic.period_s) * haptic.period_s
     return tick_s if math.isclose(end_s, tick_s, rel_tol=1e-12) else end_s
@@ -194,7 +192,7 @@ def _make_monitor(
         if pace is not None:
             now_s = time.perf_counter()
             pace.wait()
-            # Waiting belongs to no tick.
+            # Waiting is not part of a tick.
             start_s += time.perf_counter() - now_s
         return None
 
@@ -239,7 +237,7 @@ def _make_measure(
 
     def measure(context: Context, tick_s: float) -> None:
         shown = hold_context.get_discrete_state_vector().value().tolist()
-        # A handle that is lost takes the tool with it.
+        # A handle that is not finite makes the tool's state not finite, too.
         tool_state = tool_context.get_discrete_state(0).value()
         if not math.isfinite(sum(tool_state.tolist())):
             # A tool whose state is not finite has no contacts.
@@ -249,7 +247,7 @@ def _make_measure(
                 " finite",
                 statistics,
             )
-        # What the next tick needs of these is cached, so they cost nothing twice.
+        # These are cached for the next tick, so that nothing is computed twice.
         contacts, clusters, least_m, query_s = summarize(tool_state)
         statistics.add(tick_s, query_s, contacts, clusters, least_m, shown)
         if shed_context is not None:

@@ -1,4 +1,4 @@
-"""Collects what a run measures, tick by tick."""
+"""Collects the measurements of a run, tick by tick."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 from drake_haptics.systems.device.rendered_force_hold import LIMITED, NOT_FINITE
 
-# Distributions are those of the latest ticks, so that a demo left running
-# does not fill the memory; largest values and counts are of all ticks.
+# Distributions cover only the latest ticks, so that a long run does not fill the
+# memory; largest values and counts cover all ticks.
 _MAX_RECORDS = 1 << 20
-# A tick only notes its numbers; they are summed up for many ticks at once.
+# Ticks are summarized in blocks, which takes less time than one by one.
 _BLOCK = 1 << 8
 
 
@@ -41,7 +41,7 @@ class TimeSummary:
 
     @classmethod
     def of(cls, seconds: np.ndarray) -> TimeSummary:
-        """Summarizes times of shape (n,) in s; all zero where there are none."""
+        """Summarizes times of shape (n,) in s; all zero if there are none."""
         if not len(seconds):
             return cls()
         percentiles_us = 1e6 * np.percentile(seconds, [50, 99, 99.9, 100])
@@ -50,7 +50,7 @@ class TimeSummary:
 
 @dataclass(frozen=True)
 class CountSummary:
-    """Distribution of numbers of things.
+    """Distribution of counts.
 
     Attributes:
         median: Median.
@@ -62,7 +62,7 @@ class CountSummary:
 
     @classmethod
     def of(cls, counts: np.ndarray) -> CountSummary:
-        """Summarizes numbers of shape (n,); all zero where there are none."""
+        """Summarizes numbers of shape (n,); all zero if there are none."""
         if not len(counts):
             return cls()
         return cls(float(np.median(counts)), int(counts.max()))
@@ -92,7 +92,7 @@ class RunStatistics:
     """Times, contacts, loads and energies of a run."""
 
     def __init__(self, period_s: float, pace: RealTimePacer | None = None):
-        """Starts with no tick.
+        """Constructs statistics without ticks.
 
         Args:
             period_s: Simulated time of a tick, s.
@@ -103,7 +103,8 @@ class RunStatistics:
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
         self._latest: tuple[float, ...] = ()
-        # Memory is allocated as it is written: no tick has to copy it to a larger one.
+        # Pages are allocated as they are written, so that no tick copies a growing
+        # array.
         self._records = np.zeros((_MAX_RECORDS, 4))
         self._ticks = 0
         self._max_force_N = 0.0
@@ -171,7 +172,7 @@ class RunStatistics:
 
     @property
     def least_distance_m(self) -> float | None:
-        """Distance of the nearest contact so far, m, negative in depth; or None."""
+        """Least distance of a contact so far, m, negative if it penetrated; or None."""
         self._digest()
         found = self._least_distance_m
         return found if math.isfinite(found) else None
@@ -190,17 +191,17 @@ class RunStatistics:
 
     @property
     def energy_J(self) -> dict[str, dict[str, float]]:
-        """Energy by the name of the part, J, as `EnergyLedger.to_dict`; or empty."""
+        """Energies as in `EnergyLedger.to_dict`, J; empty without a ledger."""
         return self._ledger.to_dict() if self._ledger is not None else {}
 
     @property
     def shed_ticks(self) -> dict[str, int]:
-        """Numbers of ticks that left out each of `SHED_STAGES`."""
+        """Number of ticks that dropped each of `SHED_STAGES`."""
         return dict(self._shed_ticks)
 
     @property
     def lateness_us(self) -> dict[str, float]:
-        """Lateness of a paced run, or empty.
+        """Lateness of a paced run; empty without a pacer.
 
         Keys: `p50`, `p99` and `p99_9`, µs, and `skipped`, the number of ticks lost to
         stalls.
@@ -211,12 +212,12 @@ class RunStatistics:
         return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": self._pace.skipped}
 
     def book(self, ledger: EnergyLedger) -> None:
-        """Reports from now on the energy in a ledger, where the run books it."""
+        """Reports the energy in a ledger from now on."""
         self._ledger = ledger
 
     @property
     def latest(self) -> tuple[float, ...]:
-        """The last tick: what `add` was called with, the (7,) shown in line."""
+        """The arguments of `add` for the last tick, with `shown` unpacked."""
         return self._latest
 
     def add(
@@ -247,7 +248,7 @@ class RunStatistics:
             self._digest()
 
     def add_shed(self, shed: float) -> None:
-        """Adds the load that the tick shed.
+        """Adds the load that a tick shed.
 
         Args:
             shed: State of `LoadShedding`, 0 (nothing) to 3.
@@ -256,7 +257,7 @@ class RunStatistics:
             self._shed_ticks[name] += int(shed > stage)
 
     def _digest(self) -> None:
-        """Counts the pending ticks."""
+        """Summarizes the pending ticks."""
         if not self._pending:
             return
         block = np.array(self._pending)

@@ -23,16 +23,16 @@ def transfer_context(
 ) -> Context:
     """Returns a context of a new diagram that continues from another's.
 
-    Time goes on, and so does the state of every system that both have: the tool, the
-    wrench that the device shows, the bristles of friction, the balance of passivity
-    control. The contact query keeps the way out of objects that the tool is pressed
-    into. A system that is new begins as in a run that starts there. Gains are those of
-    the new scene.
+    Time continues, and so does the state of every system that both have: the tool, the
+    wrench that the device renders, the bristles of friction, the balance of passivity
+    control. The contact query keeps the way out of objects into which the tool is
+    pressed. A new system begins as in a run that starts there. Gains are those of the
+    new scene.
 
-    A simulated arm goes on as it moves if it is the same one; else it begins at rest
-    with its handle where the other was. If it does not reach that place, it begins at
-    its default angles, and the tool with it. A backend says itself where its handle is:
-    open it where `find_handle` tells, or the coupling pulls the tool away.
+    A simulated arm continues its motion if it is the same one; otherwise it begins at
+    rest with its handle where the other was. If it cannot reach that place, it begins
+    at its default angles, and the tool with it. A backend reports where its handle is:
+    open it where `find_handle` says, or the coupling pulls the tool away.
 
     Args:
         old: Diagram that ran, of any scene.
@@ -57,7 +57,7 @@ def transfer_context(
         is_reached = _take_handle(new, context, find_handle(old, old_context))
     if not is_reached:
         restarted.append(new.loop.haptic_tool)
-    # A system that is new may read states of the others at its beginning.
+    # A new system may read states of others at its initialization.
     copied = old.diagram, old_context, new.diagram, context, restarted
     _copy_states(*copied)
     new.diagram.ExecuteInitializationEvents(context)
@@ -66,14 +66,14 @@ def transfer_context(
         control = new.loop.effects.passivity
         control.begin(control.GetMyMutableContextFromRoot(context))
     if is_reached:
-        # The tool's body is another system under another law of contact.
+        # Under another law of contact the tool is another system.
         state = old.loop.haptic_tool.GetMyContextFromRoot(old_context)
         new.loop.haptic_tool.GetMyMutableContextFromRoot(context).SetDiscreteState(
             0, state.get_discrete_state(0).value()
         )
         if new.loop.penalty is not None and old.loop.penalty is not None:
             query, known = new.loop.contact_query, old.loop.contact_query
-            query.learn(
+            query.take_hint(
                 query.GetMyMutableContextFromRoot(context),
                 known,
                 known.GetMyContextFromRoot(old_context),
@@ -89,7 +89,7 @@ def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
 
 
 def _has_same_device(old: HapticDiagram, new: HapticDiagram) -> bool:
-    """Returns whether both have one backend, or arms that are the same."""
+    """Returns whether both have the same backend, or the same simulated arm."""
     if old.backend is not None or new.backend is not None:
         return old.backend is new.backend
     arms = [_find_arm(haptic) for haptic in (old, new)]
@@ -105,7 +105,7 @@ def _has_same_device(old: HapticDiagram, new: HapticDiagram) -> bool:
 
 
 def _find_arm(haptic: HapticDiagram) -> MultibodyPlant | None:
-    """Returns the plant of a simulated arm; None where the device is not one."""
+    """Returns the plant of a simulated arm; None for any other device."""
     device = haptic.loop.device
     if not device.HasSubsystemNamed("simulated_arm"):
         return None
@@ -113,7 +113,7 @@ def _find_arm(haptic: HapticDiagram) -> MultibodyPlant | None:
 
 
 def _take_handle(haptic: HapticDiagram, root: Context, X_WH: RigidTransform) -> bool:
-    """Puts the handle of a simulated arm at a pose; returns whether it gets there."""
+    """Moves the handle of a simulated arm to a pose; returns whether it can."""
     arm = _find_arm(haptic)
     if arm is None:
         return True
@@ -139,7 +139,7 @@ def _copy_states(
     context: Context,
     restarted: Sequence[System],
 ) -> None:
-    """Copies the state of each system that two have in the same place."""
+    """Copies the state of each system that two diagrams have in the same place."""
     if any(new is system for system in restarted):
         return
     if isinstance(new, Diagram):
@@ -180,23 +180,23 @@ def _describe_state(context: Context) -> tuple[object, ...]:
 def release_diagram(haptic: HapticDiagram) -> None:
     """Lets a diagram be freed when the last reference to it goes.
 
-    pydrake never frees one that has a system in Python: such a system keeps its diagram
+    pydrake never frees a diagram with a Python system: such a system keeps its diagram
     by an attribute (`ref_cycle` of its bindings), and the diagram keeps the system in
     C++, where Python's garbage collector does not see it
-    (https://github.com/RobotLocomotion/drake/issues/22515). So all attributes go. For
-    systems that calculate an output or a cache entry by a method of theirs pydrake
-    still keeps the bare system, some 40 kB.
+    (https://github.com/RobotLocomotion/drake/issues/22515). So all attributes are
+    deleted. pydrake still keeps the bare systems that calculate an output or a cache
+    entry by a method, some 40 kB each.
 
     Args:
-        haptic: Diagram that no simulator, port or viewer uses any more.
+        haptic: Diagram that no simulator, port or viewer uses any longer.
     """
     for system in list(_list_systems(haptic.diagram)):
-        # Other bindings may give a system no attributes to keep its diagram by.
+        # With other bindings a system may have no such attributes.
         getattr(system, "__dict__", {}).clear()
 
 
 def _list_systems(system: System) -> Iterator[System]:
-    """Returns a system and all within it."""
+    """Yields a system and all systems in it."""
     yield system
     if isinstance(system, Diagram):
         for part in system.GetSystems():

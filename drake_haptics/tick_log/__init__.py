@@ -1,1 +1,1 @@
-"""A log of every tick: recorded while a loop runs, read, replayed, compared."""
+"""Records, reads, replays and compares logs of every tick."""

@@ -1,4 +1,4 @@
-"""A log as a table that any program reads."""
+"""Exports a log as CSV."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ def write_csv(
     stream: IO[str],
     progress: Callable[[str, float], None] | None = None,
 ) -> None:
-    """Writes every sound tick as a line, with units in the names of the columns.
+    """Writes every valid tick as a line, with units in the names of the columns.
 
-    Numbers are written with as many digits as it takes to get the same double back.
-    Gate and fault are words, those of `GateState` and `Fault`; the gate of a simulated
-    device, which has none, is `simulated`. Ticks that are missing in the log are
-    missing here: the first column is the tick's number.
+    Numbers have as many digits as it takes to read the same doubles back. Gate and
+    fault are words, those of `GateState` and `Fault`; the gate of a simulated device,
+    which has none, is `simulated`. Ticks that are missing in the log are missing in the
+    table, whose first column is the tick's number.
 
     Args:
-        reader: Reader of the log; afterwards it knows what is missing.
+        reader: Reader of the log, which afterwards knows what is missing.
         stream: Text stream to write to.
-        progress: Called with the current work and its share that is done, in [0, 1].
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
     """
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["tick", *iterate_column_names()])
@@ -49,7 +50,7 @@ def write_csv(
 
 
 def _tell_gates(rows: TickRows) -> list[tuple[str | int, str | int]]:
-    """Returns gate and fault of each tick; numbers that have no name stay numbers."""
+    """Returns the names of gate and fault at each tick, or unknown numbers."""
     return [
         (
             _SIMULATED if math.isnan(time_s) and gate == 0 else _GATES.get(gate, gate),

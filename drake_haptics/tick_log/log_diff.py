@@ -1,4 +1,4 @@
-"""Compares two runs tick by tick, as figures and as a picture."""
+"""Compares two runs tick by tick, in numbers and as a plot."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from drake_haptics.common.colors import INKS
 from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.tick_log.log_format import (
     CLOCK_QUANTITIES,
@@ -27,7 +28,7 @@ from drake_haptics.tick_log.tick_log import TickLog
 
 
 def find_changes(before: str, after: str) -> list[str]:
-    """Returns the differences of two scenes, like `hand.grip: light, firm`."""
+    """Returns the differences of two scenes, such as `hand.grip: light, firm`."""
     old, new = (dict(_flatten(yaml.safe_load(text), "")) for text in (before, after))
     return [
         f"{key}: {old.get(key, 'not there')}, {new.get(key, 'not there')}"
@@ -37,7 +38,7 @@ def find_changes(before: str, after: str) -> list[str]:
 
 
 def _flatten(data: Any, where: str) -> Iterator[tuple[str, Any]]:
-    """Yields the key and value of each single setting."""
+    """Yields the key and value of each setting."""
     if isinstance(data, dict):
         for key, item in data.items():
             yield from _flatten(item, f"{where}.{key}" if where else key)
@@ -55,9 +56,9 @@ class QuantityDiff:
     Attributes:
         name: Name of the quantity and of its part.
         unit: Unit of the differences; empty for counts.
-        differing: Number of ticks at which a bit of it differs.
+        differing: Number of ticks at which any bit differs.
         first_tick: The first tick that differs; None if all agree.
-        largest: Largest norm of the difference; NaN where one run was not finite.
+        largest: Largest norm of the difference; NaN if one run was not finite.
         largest_tick: Tick of the largest difference.
         rms: Root of the mean squared norm over all ticks compared.
     """
@@ -76,15 +77,15 @@ class LogDiff:
     """Differences between two runs.
 
     Attributes:
-        ticks: Number of compared ticks: those that both logs have.
+        ticks: Number of ticks that both logs have, which are compared.
         only_a: Number of ticks that only the first log has.
         only_b: Number of ticks that only the second log has.
         same_scene: Whether the same scene was recorded.
         same_meshes: Whether the mesh files were the same.
         settings: Differences of the scenes, each with its key and both values.
-        quantities: Everything that was compared: not the clocks, which differ in every
-            run, nor what a device reports besides its handle, which a replay does not
-            have.
+        quantities: All compared quantities. Excluded are clock times, which differ in
+            every run, and what a device reports besides its handle, which a replay does
+            not have.
     """
 
     ticks: int
@@ -97,7 +98,7 @@ class LogDiff:
 
     @property
     def is_bit_equal(self) -> bool:
-        """Tells whether both have the same ticks and no bit of them differs."""
+        """Whether both have the same ticks, bit for bit."""
         return (
             self.only_a == 0
             and self.only_b == 0
@@ -105,15 +106,15 @@ class LogDiff:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns it ready for JSON; infinities and NaN become None."""
+        """Returns the fields, ready for JSON; infinities and NaN become None."""
         return {"is_bit_equal": self.is_bit_equal, **to_plain_data(self)}
 
 
 def compare_logs(a: TickLog, b: TickLog) -> LogDiff:
-    """Compares two runs at the ticks of the same numbers.
+    """Compares two runs at ticks with the same numbers.
 
     Raises:
-        TickLogError: They have no tick in common, or ticks of different lengths.
+        TickLogError: The logs have no tick in common, or their periods differ.
     """
     if a.header.period_s != b.header.period_s:
         raise TickLogError(
@@ -138,7 +139,7 @@ def compare_logs(a: TickLog, b: TickLog) -> LogDiff:
 
 
 def find_common_rows(a: TickLog, b: TickLog) -> tuple[TickRows, TickRows]:
-    """Returns the rows of both logs at the ticks that both have."""
+    """Returns the rows of both logs at their common ticks."""
     ticks, in_a, in_b = np.intersect1d(
         a.rows.ticks, b.rows.ticks, assume_unique=True, return_indices=True
     )
@@ -148,7 +149,7 @@ def find_common_rows(a: TickLog, b: TickLog) -> tuple[TickRows, TickRows]:
     )
 
 
-# Parts of a quantity that have units of their own: name, unit, columns.
+# Parts of a quantity with different units: name, unit, columns.
 _PARTS = {
     POSE: (("rotation", "rad", slice(0, 4)), ("position", "m", slice(4, 7))),
     VELOCITY: (
@@ -162,11 +163,11 @@ _PARTS = {
 def iterate_differences(
     a: TickRows, b: TickRows
 ) -> Iterator[tuple[str, str, np.ndarray, np.ndarray]]:
-    """Yields for each quantity, part by part, its differences between rows.
+    """Yields the differences between rows, for each part of each quantity.
 
     Yields:
-        Its name; the unit; (n,) the norm of the difference, of rotations the angle
-        between them; (n,) whether a bit differs.
+        Its name; its unit; (n,) the norm of the difference, or the angle between
+        rotations; (n,) whether any bit differs.
     """
     for quantity, numbers in REALS.items():
         if quantity in CLOCK_QUANTITIES:
@@ -195,7 +196,7 @@ def _calc_distance(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def _calc_angle(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Returns the angles between unit quaternions, exact where they are small."""
+    """Returns the angles between unit quaternions, accurate for small ones."""
     with np.errstate(invalid="ignore", over="ignore"):
         y = np.where((x * y).sum(axis=1, keepdims=True) < 0.0, -y, y)
         half_chord = np.linalg.norm(x - y, axis=1) / 2.0
@@ -205,7 +206,7 @@ def _calc_angle(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def _describe(
     ticks: np.ndarray, name: str, unit: str, norm: np.ndarray, differs: np.ndarray
 ) -> QuantityDiff:
-    """Returns the figures of a quantity."""
+    """Returns the statistics of a quantity's differences."""
     at = int(np.argmax(norm))  # the first NaN, if there is one
     return QuantityDiff(
         name=name,
@@ -218,11 +219,10 @@ def _describe(
     )
 
 
-# More differences than these do not fit a title.
+# Largest number of differences in a title.
 _MOST_CHANGES = 3
-# Letters in a line of the title.
+# Number of letters in a line of the title.
 _TITLE_WIDTH = 90
-_COLORS = ("#1f77b4", "#d62728")
 
 
 def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> None:
@@ -230,12 +230,12 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
 
     Args:
         a: One run.
-        b: Another one, drawn at the ticks that both have.
+        b: The other run, drawn at the ticks that both have.
         names: Names of the runs.
-        path: Path of the picture, PNG, SVG or PDF by its ending.
+        path: Path of the picture, PNG, SVG or PDF by its suffix.
 
     Raises:
-        ValueError: Matplotlib knows no such ending.
+        ValueError: Matplotlib does not know the suffix.
         OSError: The file cannot be written.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -245,16 +245,16 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
     FigureCanvasAgg(figure)
     force, depth, apart = figure.subplots(3, 1, sharex=True)
     pair = find_common_rows(a, b)
-    for rows, name, color in zip(pair, names, _COLORS, strict=True):
+    for rows, name, color in zip(pair, names, INKS, strict=False):
         style = {"color": color, "label": name, "linewidth": 1.0}
         force.plot(rows["time_s"], _norm(rows["F_Ho_W_commanded"][:, 3:]), **style)
         depth.plot(rows["time_s"], 1e3 * np.maximum(0.0, -rows["distance_m"]), **style)
     p_A, p_B = (rows["X_WT"][:, 4:] for rows in pair)
     apart.plot(pair[0]["time_s"], 1e3 * _norm(p_A - p_B), color="black", linewidth=1.0)
-    force.set_ylabel("force asked for / N")
-    depth.set_ylabel("penetration / mm")
-    apart.set_ylabel("between the tools / mm")
-    apart.set_xlabel("time / s")
+    force.set_ylabel("commanded force, N")
+    depth.set_ylabel("penetration, mm")
+    apart.set_ylabel("between the tools, mm")
+    apart.set_xlabel("time, s")
     force.set_title(make_title(a, b, names), fontsize=10)
     force.legend(frameon=False)
     for axes in (force, depth, apart):

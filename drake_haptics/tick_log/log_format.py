@@ -1,7 +1,7 @@
-"""The format of a log's file: its header, the columns of a tick, and its blocks.
+"""Defines the format of a log: its header, the columns of a tick, and its blocks.
 
-A block is some hundreds of ticks, packed, that can be read alone. The layout is
-documented in docs/record-replay.md.
+A block contains some hundred packed ticks and can be read separately.
+docs/record-replay.md documents the layout.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from drake_haptics.common.one_line import one_line
 
 
 class TickLogError(HapticsError):
-    """A log that cannot be written, read or replayed; says why and what to do."""
+    """A log cannot be written, read or replayed; the message says what to do."""
 
 
 FILE_MAGIC = b"\x89DHLOG\r\n"
@@ -36,12 +36,12 @@ _MAX_JSON_BYTES = 1 << 24
 
 @dataclass(frozen=True)
 class TickLogHeader:
-    """The header of a log: what was recorded.
+    """The header of a log, which says what was recorded.
 
     Attributes:
         program_version: Version of drake_haptics.
         period_s: The tick, s.
-        scene: The scene file, YAML, with mesh paths that hold from any folder.
+        scene: The scene file, YAML, with absolute mesh paths.
         mesh_sha256: SHA-256 (hex) of each mesh file of the scene by its path.
         X_WB: (7,) pose of the device's base, [qw qx qy qz x y z], m.
     """
@@ -63,10 +63,10 @@ def pack_header(header: TickLogHeader) -> bytes:
 
 
 def read_header(stream: BinaryIO, name: str) -> TickLogHeader:
-    """Reads the head of a log; the stream is then at the first block.
+    """Reads the header of a log; the stream is then at the first block.
 
     Raises:
-        TickLogError: The file is no log, of another version, or damaged.
+        TickLogError: The file is not a log, of another version, or damaged.
     """
     head = stream.read(_FILE_HEAD.size)
     if len(head) < _FILE_HEAD.size or not head.startswith(FILE_MAGIC):
@@ -97,10 +97,10 @@ def read_header(stream: BinaryIO, name: str) -> TickLogHeader:
 
 
 def _parse_header(facts: object) -> TickLogHeader:
-    """Returns the header that JSON holds.
+    """Returns the header from JSON data.
 
     Raises:
-        ValueError: A part is missing, or has another form.
+        ValueError: A part is missing or invalid.
     """
     names = {field.name for field in fields(TickLogHeader)}
     if not isinstance(facts, dict) or not names <= facts.keys():
@@ -128,7 +128,7 @@ def hash_file(path: str) -> str:
     """Returns the SHA-256 of a file, in hexadecimal digits.
 
     Raises:
-        OSError: It cannot be read.
+        OSError: The file cannot be read.
     """
     sha = hashlib.sha256()
     with open(path, "rb") as stream:
@@ -142,7 +142,8 @@ def find_changed_meshes(header: TickLogHeader) -> list[str]:
 
     def is_same(path: str, sha256: str) -> bool:
         try:
-            # A forged path can be that of a device, which never ends, or none at all.
+            # A forged path may name a device, which never ends, or not be a path at
+            # all.
             return Path(path).is_file() and hash_file(path) == sha256
         except (OSError, ValueError):
             return False
@@ -158,7 +159,7 @@ VELOCITY = (
 WRENCH = ("taux_Nm", "tauy_Nm", "tauz_Nm", "fx_N", "fy_N", "fz_N")
 
 # The quantities of a tick that are doubles, with the names of their numbers, in the
-# order of the file. Format version 1.
+# order of format version 1.
 REALS: dict[str, tuple[str, ...]] = {
     "time_s": ("",),
     "clock_s": ("",),
@@ -172,16 +173,16 @@ REALS: dict[str, tuple[str, ...]] = {
     "X_WT": POSE,
     "V_WT": VELOCITY,
 }
-# Those that are unsigned integers of 32 bits.
+# The quantities that are unsigned 32-bit integers.
 COUNTS = ("contacts", "clusters", "status", "sequence", "buttons", "gate", "fault")
 
 NUM_REALS = sum(map(len, REALS.values()))
 # Index of the first vector that is a signal of the loop.
 FIRST_SIGNAL = 5
 SIGNALS = tuple(REALS)[FIRST_SIGNAL:]
-# Quantities that depend on the computer and its load, and so differ in every run.
+# Quantities that depend on the computer and its load, so that every run differs.
 CLOCK_QUANTITIES = ("clock_s", "query_s", "device_time_s")
-# Quantities of a device besides its handle. A replay has no device.
+# Quantities of a device besides its handle, which a replay does not have.
 DEVICE_QUANTITIES = ("sequence", "buttons", "gate", "fault")
 
 
@@ -200,12 +201,12 @@ SLICES = _find_slices()
 class TickRows:
     """Ticks of a log, one row each.
 
-    A row holds the values that the updates of its tick saw: all are of the same
-    instant, before the tick changes anything.
+    A row has the values that the updates of its tick saw, all at the same instant
+    before the tick changes anything.
 
     Attributes:
-        ticks: (n,) int64, numbers of the ticks, from 0 on, rising.
-        reals: (n, 43) doubles, the quantities of `REALS` one after another.
+        ticks: (n,) int64, increasing numbers of the ticks, from 0.
+        reals: (n, 43) doubles, the concatenated quantities of `REALS`.
         counts: (n, 7) uint32, the quantities of `COUNTS`.
     """
 
@@ -220,7 +221,7 @@ class TickRows:
         return len(self.ticks)
 
     def __getitem__(self, quantity: str) -> np.ndarray:
-        """Returns a quantity: (n,) where it is one number, else (n, numbers).
+        """Returns a quantity: (n,) if it is one number, else (n, numbers).
 
         Raises:
             KeyError: No quantity has that name.
@@ -232,7 +233,7 @@ class TickRows:
 
 
 def iterate_column_names() -> Iterator[str]:
-    """Yields a name with its unit for each number of a row, in order."""
+    """Yields the name, with a unit, of each number of a row, in order."""
     for quantity, numbers in REALS.items():
         for number in numbers:
             yield f"{quantity}_{number}" if number else quantity
@@ -240,7 +241,7 @@ def iterate_column_names() -> Iterator[str]:
 
 
 def join_rows(parts: list[TickRows]) -> TickRows:
-    """Returns rows that follow one another as one."""
+    """Returns consecutive rows as one."""
     if not parts:
         return TickRows(
             np.zeros(0, np.int64),
@@ -262,7 +263,7 @@ MAX_TICK = 1 << 48
 _BLOCK_HEAD = struct.Struct("<8sQIII")
 BLOCK_HEADER_BYTES = _BLOCK_HEAD.size + _CRC.size
 _ROW_BYTES = 8 * NUM_REALS + 4 * len(COUNTS)
-# zlib makes bytes that it cannot shorten longer by less than this.
+# Largest number of bytes that zlib adds to incompressible data.
 _MAX_PAYLOAD_BYTES = MAX_BLOCK_TICKS * _ROW_BYTES + 4096
 
 
@@ -271,8 +272,9 @@ class BlockHeader:
     """The header before a block's payload.
 
     Attributes:
-        first_tick: Number of the first tick; in the end mark, the number of all ticks.
-        ticks: Number of ticks in it; 0 in the mark that ends a complete log.
+        first_tick: Number of the first tick; in the end mark, the total number of
+            ticks.
+        ticks: Number of ticks in the block; 0 in the end mark of a complete log.
         payload_bytes: Length of the packed ticks.
         payload_crc: CRC-32 of the packed ticks.
     """
@@ -302,9 +304,9 @@ def pack_block(first_tick: int, reals: np.ndarray, counts: np.ndarray) -> bytes:
 
 
 def parse_block_header(data: bytes) -> BlockHeader | None:
-    """Returns a block's header; None if these bytes are not a sound one.
+    """Returns a block's header; None if the bytes are not a valid one.
 
-    Its lengths are within bounds, so that they can be believed.
+    Its lengths are within bounds, so that they can be trusted.
     """
     if len(data) < BLOCK_HEADER_BYTES:
         return None
@@ -331,7 +333,7 @@ def unpack_block(header: BlockHeader, payload: bytes) -> TickRows | None:
     n = header.ticks
     unpacker = zlib.decompressobj()
     try:
-        # One byte more than there may be: a longer stream does not pass for whole.
+        # One byte more than allowed, so that a longer stream is detected.
         raw = unpacker.decompress(payload, n * _ROW_BYTES + 1)
     except zlib.error:
         return None
@@ -346,10 +348,10 @@ def unpack_block(header: BlockHeader, payload: bytes) -> TickRows | None:
 
 
 def _shuffle(values: np.ndarray, word: str) -> bytes:
-    """Returns differences of columns of smooth numbers, like bytes together.
+    """Returns differences of columns of smooth numbers, with like bytes together.
 
-    Neighbors in time share sign, exponent and leading bits: of the difference of
-    their bit patterns these bytes are zero.
+    Neighbors in time share sign, exponent and leading bits, so that these bytes of the
+    difference of their bit patterns are zero.
     """
     bits = np.ascontiguousarray(values).view(word)
     steps = np.diff(bits, axis=0, prepend=np.zeros((1, bits.shape[1]), word))
@@ -358,7 +360,7 @@ def _shuffle(values: np.ndarray, word: str) -> bytes:
 
 
 def _unshuffle(raw: bytes, ticks: int, word: str) -> np.ndarray:
-    """Returns the bit patterns (ticks, columns) that `_shuffle` turned into bytes."""
+    """Returns the bit patterns (ticks, columns) from the bytes of `_shuffle`."""
     size = np.dtype(word).itemsize
     planes = np.frombuffer(raw, np.uint8).reshape(-1, size, ticks)
     steps = np.ascontiguousarray(planes.transpose(2, 0, 1)).view(word)[..., 0]

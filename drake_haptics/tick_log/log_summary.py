@@ -1,4 +1,4 @@
-"""Sums up a log in figures."""
+"""Summarizes a log."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.tick_log.log_format import TickLogHeader, find_changed_meshes
 from drake_haptics.tick_log.tick_log import TickLogReader
 
-# Values of `status` as `RenderedForceHold` has them.
+# Values of `status` as in `RenderedForceHold`.
 _LIMITED = 1
 
 
 @dataclass(frozen=True)
 class LogSummary:
-    """A log in figures.
+    """The summary of a log.
 
     Attributes:
         header: Header of the log.
         bytes: Size of the file.
-        ticks: Number of sound ticks.
+        ticks: Number of valid ticks.
         end_s: Simulated time of the last of them, s.
         gaps: A sentence for each gap.
-        damaged_blocks: Places in the file that could not be read.
+        damaged_blocks: Number of places in the file that could not be read.
         changed_meshes: Mesh files that are gone or have changed since.
         is_simulated: Whether the device was simulated.
-        max_force_N: Largest force that was asked for, N.
-        max_torque_Nm: Largest torque, N·m.
+        max_force_N: Largest commanded force, N.
+        max_torque_Nm: Largest commanded torque, N·m.
         max_penetration_m: Deepest contact, m.
         max_contacts: Largest number of contacts in a tick.
         limited_ticks: Number of ticks at which the device's limits cut the requested
@@ -55,7 +55,7 @@ class LogSummary:
     longest_wait_s: float
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns it ready for JSON; infinities and NaN become None."""
+        """Returns the fields, ready for JSON; infinities and NaN become None."""
         return to_plain_data(self)
 
 
@@ -63,11 +63,12 @@ def summarize_log(
     path: str | os.PathLike[str],
     progress: Callable[[str, float], None] | None = None,
 ) -> LogSummary:
-    """Reads a log, block by block, and counts.
+    """Reads a log block by block and summarizes it.
 
     Raises:
-        TickLogError: It is no log, of another version, or its head is damaged.
-        OSError: It cannot be opened.
+        TickLogError: The file is not a log or of another version, or its header is
+            damaged.
+        OSError: The file cannot be opened.
     """
     reader = TickLogReader(path)
     ticks = limited = contacts = 0

@@ -18,16 +18,15 @@ from drake_haptics.tick_log.tick_log import TickLog
 
 
 class ReplayDevice(DeviceBackend):
-    """A device that moves as a log says, one recorded tick per command.
+    """A device that replays a log, one recorded tick per command.
 
-    It stands where the recording begins until the first command enables it; each
-    further one moves it on by a tick, so that a loop of the recorded rate meets tick
-    k at its tick k. After the last tick, or the first gap of the log, it stays. It
-    shows no force: a recorded hand does not yield.
+    It stays at the start of the recording until the first command enables it; each
+    further command advances it by a tick, so that a loop with the recorded rate sees
+    tick k at its tick k. After the last tick, or at the first gap of the log, it stops.
+    It shows no force, because a recorded hand does not yield.
 
-    The readings are those of the recorded loop but for the round-off of going from the
-    world into the base's frame and back. `drake_haptics.simulation.replay_log` gives
-    the loop exactly the same bits.
+    The readings are those of the recorded loop up to the round-off of converting to the
+    base's frame and back. `drake_haptics.simulation.replay_log` replays bit for bit.
     """
 
     def __init__(self, log: TickLog):
@@ -72,15 +71,15 @@ class ReplayDevice(DeviceBackend):
         )
 
     def write(self, command: DeviceCommand) -> None:
-        """Advances by a tick; the first call only starts."""
+        """Advances by a tick; the first call only starts the replay."""
         if self._gate == GateState.ACTIVE:
             self._tick = min(self._tick + 1, len(self._times_s) - 1)
         self._gate = GateState.ACTIVE
 
     def get_link_status(self) -> LinkStatus:
-        """Returns how many ticks have been given; none is ever lost."""
+        """Returns the number of ticks so far; no tick is ever lost."""
         return LinkStatus(received=self._tick + 1)
 
     def close(self) -> None:
-        """Stops where it is."""
+        """Stops the replay."""
         self._gate = GateState.IDLE

@@ -1,4 +1,4 @@
-"""Reads a log, whole or block by block, and says what is missing in it."""
+"""Reads a log, whole or block by block, and finds what is missing."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _SEARCHED_BYTES = 1 << 20
 
 @dataclass(frozen=True)
 class Damage:
-    """Bytes of a log that are not a block, or not the one that follows.
+    """Bytes of a log that are not a block, or not the next one.
 
     Attributes:
-        offset_bytes: Offset of the first of them in the file.
+        offset_bytes: Offset of the first byte in the file.
     """
 
     offset_bytes: int
@@ -49,12 +49,12 @@ class EndMark:
 def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
     """Yields the content of a log, from the stream's position to its end.
 
-    A damaged block yields only the damage; the search goes on at the next one that is
-    sound. Ticks rise from block to block: one that comes again counts as damage. It
-    never reads more at once than the largest block takes.
+    A damaged block yields only the damage; the scan continues at the next valid one.
+    Ticks increase from block to block; a repeated tick counts as damage. At most the
+    largest block is read at once.
 
     Args:
-        stream: The file, after its head; can seek.
+        stream: The seekable file, after its header.
     """
     size = os.fstat(stream.fileno()).st_size
     position, next_tick = stream.tell(), 0
@@ -76,7 +76,7 @@ def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
 
 
 def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
-    """Returns the ticks of a block whose payload comes next; None if damaged."""
+    """Returns the ticks of a block whose payload is next; None if damaged."""
     payload = stream.read(header.payload_bytes)
     if len(payload) < header.payload_bytes:
         return None
@@ -84,7 +84,7 @@ def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
 
 
 def _find_block_header(stream: BinaryIO, start: int, size: int) -> int:
-    """Returns the offset of the next sound header from `start` on; `size` if none."""
+    """Returns the offset of the next valid header from `start`; `size` if none."""
     stream.seek(start)
     window = b""
     while data := stream.read(_SEARCHED_BYTES):
@@ -101,7 +101,7 @@ def _find_block_header(stream: BinaryIO, start: int, size: int) -> int:
     return size
 
 
-# Progress is reported in steps of this size: a block takes less time than a report.
+# Step of the reported progress, since a block takes less time than a report.
 _REPORTED_SHARE = 0.01
 
 
@@ -131,9 +131,9 @@ class TickLog:
 
     Attributes:
         header: Header of the log.
-        rows: Every tick that is sound, in order.
+        rows: All valid ticks, in order.
         gaps: Gaps of the log, in order.
-        damaged_blocks: Places in the file that could not be read.
+        damaged_blocks: Number of places in the file that could not be read.
     """
 
     header: TickLogHeader
@@ -151,21 +151,21 @@ class TickLog:
         return [gap.describe(self.header.period_s) for gap in self.gaps]
 
     def count_ticks_from_start(self) -> int:
-        """Returns how many ticks there are from the first to the first gap."""
+        """Returns the number of ticks from the start to the first gap."""
         return self.gaps[0].first_tick if self.gaps else len(self.rows)
 
 
 class TickLogReader:
-    """Reads a log block by block, so that a long one need not fit into memory.
+    """Reads a log block by block, so that it need not fit into memory.
 
     Attributes:
         header: Header of the log.
         gaps: Gaps in the part that has been read so far.
-        damaged_blocks: Places that could not be read so far.
+        damaged_blocks: Number of places so far that could not be read.
     """
 
     def __init__(self, path: str | os.PathLike[str]):
-        """Reads the head.
+        """Reads the header.
 
         Raises:
             TickLogError: It is no log, of another version, or its head is damaged.
@@ -182,9 +182,9 @@ class TickLogReader:
     def iterate_blocks(
         self, progress: Callable[[str, float], None] | None = None
     ) -> Iterator[TickRows]:
-        """Yields the ticks of every sound block, in order.
+        """Yields the ticks of every valid block, in order.
 
-        After the last one, `gaps` and `damaged_blocks` tell what is missing.
+        After the last one, `gaps` and `damaged_blocks` are complete.
         """
         self.gaps, self.damaged_blocks = [], 0
         next_tick, next_share = 0, 0.0
@@ -216,11 +216,12 @@ def read_tick_log(
     """Reads a whole log.
 
     It takes 400 bytes of memory per tick, 1.4 GB for an hour at 1 kHz, and twice that
-    on the way. `TickLogReader` takes it block by block.
+    while reading. `TickLogReader` reads block by block.
 
     Args:
         path: Path of the file. It may be truncated or damaged, or still be written.
-        progress: Called with the current work and its share that is done, in [0, 1].
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
 
     Raises:
         TickLogError: It is no log, of another version, or its head is damaged.

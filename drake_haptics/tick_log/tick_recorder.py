@@ -1,4 +1,4 @@
-"""Writes a log while a loop runs. No tick waits for the disk."""
+"""Writes a log while a loop runs, without waiting for the disk."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from drake_haptics.tick_log.log_format import (
     pack_header,
 )
 
-# Time between two writes of what has been recorded, s.
+# Time between writes, s.
 _WRITE_PERIOD_S = 0.25
 _CHUNK_TICKS = 1024
-# Most ticks that may wait for a slow disk: 100 MB, four minutes at 1 kHz.
+# Largest number of ticks that wait for a slow disk: 100 MB, four minutes at 1 kHz.
 _MAX_CHUNKS = 256
 
 
 class _Chunk:
-    """Room for a second or so of ticks. Rows below `filled` are final."""
+    """A buffer for about a second of ticks, whose rows below `filled` are final."""
 
     def __init__(self, first_tick: int):
         self.first_tick = first_tick
@@ -45,7 +45,7 @@ def _create(path: Path, head: bytes) -> BinaryIO:
     """Returns a new file that begins with these bytes.
 
     Raises:
-        OSError: The system refuses; the error names the file.
+        OSError: The file cannot be created; the error names it.
     """
     stream = open(path, "wb", buffering=0)
     try:
@@ -59,24 +59,23 @@ def _create(path: Path, head: bytes) -> BinaryIO:
 class TickRecorder:
     """A log that is being written.
 
-    A thread of its own packs and writes what `add` has noted, four times per second,
-    and hands it to the system: a process that is killed loses less than the last
-    second. (A computer that loses its power may lose more.)
+    A thread packs and writes what `add` has recorded four times per second, so that a
+    killed process loses less than the last second. (A loss of power may lose more.)
 
-    If the disk cannot keep up with some minutes of ticks, or fails, ticks are left
-    out, and `close` says so: the loop goes on. Use it as a context manager; only a log
-    that was closed has the mark of a complete one.
+    If the disk fails, or falls behind by some minutes, ticks are left out and `close`
+    says so, but the loop continues. Use it as a context manager; only a closed log has
+    the end mark of a complete one.
     """
 
     def __init__(self, path: str | os.PathLike[str], header: TickLogHeader):
-        """Creates the file, in place of one that is there, and writes its head.
+        """Creates the file, replacing an existing one, and writes the header.
 
         Args:
             path: The file.
             header: Header of the log.
 
         Raises:
-            OSError: The system refuses.
+            OSError: The file cannot be created.
         """
         self._path = Path(path)
         self._stream = _create(self._path, pack_header(header))
@@ -84,7 +83,7 @@ class TickRecorder:
         self._ticks = 0
         self._left_out = 0
         self._chunk = _Chunk(0)
-        # The last one is being filled; the writer takes from the first.
+        # The last one is being filled; the writer takes the first one.
         self._chunks = deque([self._chunk])
         self._written = 0
         self._error: OSError | None = None
@@ -96,7 +95,7 @@ class TickRecorder:
 
     @property
     def ticks(self) -> int:
-        """Ticks so far."""
+        """Number of ticks so far."""
         return self._ticks
 
     def __repr__(self) -> str:
@@ -112,15 +111,15 @@ class TickRecorder:
         distance_m: float,
         device_time_s: float,
     ) -> None:
-        """Notes a tick; takes some microseconds and never waits.
+        """Records a tick in some microseconds, without waiting.
 
         Args:
             time_s: Time of the simulation, s.
-            signals: (38,) the quantities from `X_WH` to `V_WT`, as `REALS` has them.
+            signals: (38,) the quantities of `REALS` from `X_WH` to `V_WT`.
             counts: The quantities of `COUNTS`, in [0, 2³²).
             query_s: Duration of the contact query, s.
             distance_m: Distance of the nearest contact, m; infinite without one.
-            device_time_s: Time of the device's clock, s; NaN where it is simulated.
+            device_time_s: Time of the device's clock, s; NaN if it is simulated.
         """
         tick = self._ticks
         self._ticks = tick + 1
@@ -138,14 +137,14 @@ class TickRecorder:
         row[:FIRST_SIGNAL] = (time_s, clock_s, query_s, device_time_s, distance_m)
         row[FIRST_SIGNAL:] = signals
         chunk.counts[i] = counts
-        # Last: from here on the writer may take the row.
+        # Last, because the writer may take the row from here on.
         chunk.filled = i + 1
 
     def close(self) -> None:
         """Writes the rest and the end mark; may be called again.
 
         Raises:
-            TickLogError: The log is not complete; says what is missing.
+            TickLogError: The log is not complete; the message says what is missing.
         """
         if self._stream.closed:
             return
@@ -153,7 +152,7 @@ class TickRecorder:
         self._thread.join()
         try:
             self._stream.close()
-        except OSError as error:  # what could not be written still cannot
+        except OSError as error:  # writing still fails
             self._error = self._error or error
         if self._error is not None:
             raise TickLogError(
@@ -171,7 +170,7 @@ class TickRecorder:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Closes the log; an error from before is worth more than one from closing."""
+        """Closes the log; an error in the context hides one from closing."""
         try:
             self.close()
         except TickLogError:
@@ -192,13 +191,13 @@ class TickRecorder:
             self._error = error
 
     def _write_noted(self) -> None:
-        """Writes what has been noted since the last time."""
+        """Writes what has been recorded since the last time."""
         while True:
             chunk = self._chunks[0]
             filled = chunk.filled
             while self._written < filled:
-                # In small blocks: packing one takes the interpreter from the loop for
-                # some 30 µs; compressing does not.
+                # In small blocks, because packing one holds the interpreter for some 30
+                # µs; compressing does not.
                 rows = slice(
                     self._written, min(filled, self._written + MAX_BLOCK_TICKS)
                 )

@@ -1,1 +1,1 @@
-"""Meshcat's page and camera, and recordings of it."""
+"""Opens Meshcat, aims its camera, and writes recordings."""

@@ -1,4 +1,4 @@
-"""Shows a scene in Meshcat: opens the page, sets the stage, writes a recording."""
+"""Opens Meshcat, aims its camera, and writes recordings."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ from drake_haptics.common.colors import (
     write_css,
 )
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.web_page import extend_page
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Pose
 
-# Directions from which the camera looks, by the name of the view. Straight down it
-# would not know where up is.
+# Directions from which the camera looks, by view. Exactly vertical ones would leave the
+# up direction undefined.
 _VIEWS = {
     "fit": (0.48, -0.74, 0.47),
     "front": (0.0, -1.0, 0.0),
@@ -41,7 +42,7 @@ _TRACES = "/* the traces */"
 
 
 def start_meshcat(port: int | None = None) -> Meshcat:
-    """Opens a page on this computer.
+    """Starts a Meshcat on this computer.
 
     Args:
         port: TCP port of the page; None takes the first free one from 7000 on.
@@ -49,7 +50,7 @@ def start_meshcat(port: int | None = None) -> Meshcat:
     Raises:
         HapticsError: The port is not available.
     """
-    # Drake gives no reason where it fails, so ask the system first.
+    # Drake's error has no reason, so ask the system first.
     if port is not None:
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -58,7 +59,7 @@ def start_meshcat(port: int | None = None) -> Meshcat:
             except (OSError, OverflowError) as error:
                 raise HapticsError(f"port {port} cannot be used: {error}") from error
     try:
-        # The page shows elsewhere how fast it runs.
+        # The run's page shows the real-time rate.
         return Meshcat(
             MeshcatParams(host="localhost", port=port, show_stats_plot=False)
         )
@@ -67,7 +68,7 @@ def start_meshcat(port: int | None = None) -> Meshcat:
 
 
 def configure_camera(meshcat: Meshcat, haptic: HapticDiagram) -> None:
-    """Points the camera at where tool and objects meet, on a plain background."""
+    """Aims the camera at where tool and objects meet, and sets a plain background."""
     meshcat.SetProperty("/Background", "top_color", list(BACKGROUND_TOP[:3]))
     meshcat.SetProperty("/Background", "bottom_color", list(BACKGROUND_BOTTOM[:3]))
     meshcat.SetProperty("/Grid", "visible", False)
@@ -78,13 +79,13 @@ def configure_camera(meshcat: Meshcat, haptic: HapticDiagram) -> None:
 def aim_camera(
     meshcat: Meshcat, p_WP: np.ndarray, view: str, within: float = 1.0
 ) -> None:
-    """Points the camera at where tool and objects meet.
+    """Aims the camera at where tool and objects meet.
 
     Args:
         meshcat: Meshcat whose camera is aimed.
-        p_WP: (n, 3) points to be seen, m, as of `find_framed_points`.
+        p_WP: (n, 3) points to show, m, such as those of `find_framed_points`.
         view: One of `CAMERAS`.
-        within: Share of the picture's height, about its middle, that must hold it.
+        within: Share of the picture's height, about its middle, that must contain them.
 
     Raises:
         ValueError: There is no such view, or the share is not from 0.1 to 1.
@@ -99,7 +100,7 @@ def aim_camera(
     R_CW = np.vstack([right, np.cross(backwards, right), backwards])
     p_CP = p_WP @ R_CW.T
     middle = (p_CP.min(axis=0) + p_CP.max(axis=0)) / 2
-    # The least distance at which the cone of the view holds every point.
+    # The least distance at which the view cone contains every point.
     across = np.linalg.norm(p_CP[:, :2] - middle[:2], axis=1)
     slope = within * np.tan(_HALF_VIEW_RAD)
     distance = float(np.max(p_CP[:, 2] - middle[2] + across / slope))
@@ -110,8 +111,7 @@ def aim_camera(
 def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
     """Returns points (n, 3) of the world, m, that must be in the picture.
 
-    Of large surroundings only the part within a tool's size of the hand's path is
-    framed.
+    Of large objects only the part within a tool's size of the hand's path is included.
     """
     vertices = haptic.tool.mesh.vertices
     tool = np.vstack(
@@ -129,7 +129,7 @@ def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
         mesh = decomposition.mesh
         corners = _transform(item.pose, mesh.vertices)
         framed.append(corners[np.all((corners > low) & (corners < high), axis=1)])
-        # A facet that is larger than everything framed may have no corner there.
+        # A large facet may have no corner in the framed part.
         facets = corners[mesh.triangles]
         is_large = np.ptp(facets, axis=1).max(axis=1) > size
         is_near = np.all((facets.max(1) > low) & (facets.min(1) < high), axis=1)
@@ -140,7 +140,8 @@ def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
 def clip_facet(p_WF: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Returns the corners (n, 3) of a flat convex facet's part in a box.
 
-    By Sutherland and Hodgman's algorithm: one plane of the box after the other cuts it.
+    It uses Sutherland and Hodgman's algorithm, which clips by each plane of the box in
+    turn.
 
     Args:
         p_WF: (k, 3) corners of the facet in order, m.
@@ -164,7 +165,7 @@ def clip_facet(p_WF: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarra
 
 
 def _transform(pose: Pose, points: np.ndarray) -> np.ndarray:
-    """Returns points (n, 3) of a frame in the frame that its pose is given in."""
+    """Returns points (n, 3) of a frame in the frame of its pose."""
     X: RigidTransform = pose.to_rigid_transform()
     return points @ X.rotation().matrix().T + X.translation()
 
@@ -179,16 +180,15 @@ def write_recording(
     max_torque_Nm: float,
     has_friction: bool = False,
 ) -> None:
-    """Writes the page as one HTML file that needs nothing else.
+    """Writes the page as one self-contained HTML file.
 
-    Below the scene are force and torque over time, and the controls that play, stop and
-    move through both.
+    Below the scene are plots of force and torque over time, and playback controls.
 
     Args:
         meshcat: Meshcat whose recording has been published.
         path: The file to write.
         title: Heading of the legend.
-        felt: (n, 3) sizes, as of `HapticVisualizer.recorded_sizes`.
+        felt: (n, 3) times, forces and torques of `HapticVisualizer.recorded_sizes`.
         max_force_N: The device's largest force, N.
         max_torque_Nm: The device's largest torque, N·m.
         has_friction: Whether friction is drawn.
@@ -225,5 +225,5 @@ def write_recording(
         .read_text(encoding="utf-8")
     )
     player = player.replace(_TRACES, json.dumps(traces), 1)
-    page = meshcat.StaticHtml().replace("</body>", f"{legend}{player}</body>", 1)
+    page = extend_page(meshcat.StaticHtml(), legend + player)
     path.write_text(page, encoding="utf-8")

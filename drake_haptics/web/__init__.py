@@ -1,1 +1,1 @@
-"""The page of a loop in the browser: its server, process, link and messages."""
+"""Serves the page of a loop to browsers."""

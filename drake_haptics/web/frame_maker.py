@@ -1,4 +1,4 @@
-"""Turns what the loop noted into what the page shows, 30 times a second.
+"""Converts the loop's packets to frames for the page, 30 times per second.
 
 The page's process runs it, without NumPy. A camera's frame C is Drake's: x right, y
 down, z away from the viewer.
@@ -13,9 +13,9 @@ from typing import Any
 
 from drake_haptics.web.messages import Telemetry, Tick
 
-# Meshcat's camera sees 75° from the lower to the upper edge.
+# Meshcat's camera has a vertical field of view of 75°.
 HEIGHT_PER_DEPTH = 2.0 * math.tan(math.radians(75.0) / 2.0)
-# Nearest distance from the camera at which a point is seen, m.
+# Nearest distance from the camera at which a point is visible, m.
 LEAST_DEPTH_M = 0.01
 
 
@@ -30,53 +30,32 @@ def turn_into_view(v_W: Sequence[float], R_WC: Sequence[float]) -> list[float]:
     return [x, -y, -z]
 
 
-def measure_height(
-    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
-) -> float | None:
-    """Returns the height of the picture at the depth of a point, m.
-
-    None for a point that is not before the camera, or nowhere.
-
-    Args:
-        p_WQ: (3,) point, m.
-        R_WC: (9,) axes of the camera, row by row.
-        p_WC: (3,) position of the camera, m.
-    """
-    *_, near = _see(p_WQ, R_WC, p_WC)
-    return HEIGHT_PER_DEPTH * -near if LEAST_DEPTH_M <= -near < math.inf else None
-
-
 def find_in_view(
     p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
-) -> list[float] | None:
-    """Returns the place of a point in the view: right and up of the middle, in heights.
+) -> tuple[list[float] | None, float | None]:
+    """Returns the place of a point in the view, and the view's height at its depth, m.
 
-    None for a point that is not before the camera, or nowhere.
+    The place is right and up of the middle, in heights of the view. Both are None for a
+    point that is not in front of the camera or not finite.
 
     Args:
         p_WQ: (3,) point, m.
         R_WC: (9,) axes of the camera, row by row.
         p_WC: (3,) position of the camera, m.
     """
-    height_m = measure_height(p_WQ, R_WC, p_WC)
-    if height_m is None:
-        return None
-    right, up, _ = _see(p_WQ, R_WC, p_WC)
-    return [right / height_m, up / height_m]
-
-
-def _see(
-    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
-) -> list[float]:
-    """Returns the position of a point from the camera: right, up and near, m."""
-    return turn_into_view([q - c for q, c in zip(p_WQ, p_WC, strict=True)], R_WC)
+    p_CQ_W = [q - c for q, c in zip(p_WQ, p_WC, strict=True)]
+    right, up, near = turn_into_view(p_CQ_W, R_WC)
+    if not LEAST_DEPTH_M <= -near < math.inf:
+        return None, None
+    height_m = HEIGHT_PER_DEPTH * -near
+    return [right / height_m, up / height_m], height_m
 
 
 TRACE_STEP_S = 4e-3
 
 
 class Trace:
-    """Thins ticks: keeps the largest values of each `TRACE_STEP_S` simulated."""
+    """Reduces ticks to the largest values in each `TRACE_STEP_S` of simulated time."""
 
     def __init__(self) -> None:
         self._step = -math.inf
@@ -84,13 +63,7 @@ class Trace:
         self._done: list[tuple[float, float]] = []
 
     def add(self, time_s: float, force_N: float, torque_Nm: float) -> None:
-        """Adds a tick.
-
-        Args:
-            time_s: Simulated time, s; where it goes back, the scene began again.
-            force_N: Norm of the force, N.
-            torque_Nm: Norm of the torque, N·m.
-        """
+        """Adds a tick; if simulated time goes back, the scene has begun again."""
         step = math.floor(time_s / TRACE_STEP_S + 1e-6)
         if step != self._step:
             if self._largest is not None:
@@ -113,14 +86,14 @@ class Trace:
         }
 
 
-# Times are over this many latest ticks, rates over this many seconds.
+# Number of latest ticks for times, and number of seconds for rates.
 _LATEST = 1000
 _RATE_SPAN_S = 1.0
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 class FrameMaker:
-    """Averages and counts over packets; see `make`."""
+    """Makes frames from packets."""
 
     def __init__(self, shed_stages: Sequence[str] = ()):
         """Starts with no tick."""
@@ -133,7 +106,7 @@ class FrameMaker:
         self._ticks = 0
 
     def make(self, packet: Telemetry) -> dict[str, Any]:
-        """Returns a frame for the page, without whether it drives.
+        """Returns a frame for the page, except for whether that page drives.
 
         Unknown values are None. Vectors `f` and `tau` are right, up and near in the
         page's picture, and so are the world's `axes`; `handle` is right and up of its
@@ -143,6 +116,7 @@ class FrameMaker:
             self._trace.add(tick.time_s, math.hypot(*tick.f_W), math.hypot(*tick.tau_W))
             self._tick_s.append(tick.tick_s)
             self._late_s.append(tick.late_s)
+        handle, height_m = find_in_view(packet.p_WH, packet.R_WC, packet.p_WC)
         frame: dict[str, Any] = {
             "trace": self._trace.take(),
             "gate": packet.gate,
@@ -150,8 +124,8 @@ class FrameMaker:
             "silent_s": packet.silent_s,
             "skipped": packet.skipped,
             "shed": list(self._shed_stages[: packet.shed]),
-            "handle": find_in_view(packet.p_WH, packet.R_WC, packet.p_WC),
-            "height_m": measure_height(packet.p_WH, packet.R_WC, packet.p_WC),
+            "handle": handle,
+            "height_m": height_m,
             "axes": {
                 name: turn_into_view(axis, packet.R_WC) for name, axis in _AXES.items()
             },
@@ -193,7 +167,7 @@ class FrameMaker:
 def _describe_contact(ticks: Sequence[Tick]) -> dict[str, float | None]:
     """Returns the last tick's counts, and the least distance of all ticks, m.
 
-    That is negative where something penetrates.
+    That is negative if something penetrates.
     """
     found: dict[str, float | None] = dict.fromkeys(("contacts", "clusters", "gap_m"))
     if ticks and not math.isnan(ticks[-1].contacts):
@@ -208,7 +182,7 @@ def _describe_contact(ticks: Sequence[Tick]) -> dict[str, float | None]:
 def _describe(
     seconds: Sequence[float], shares: dict[str, float]
 ) -> dict[str, float] | None:
-    """Returns quantiles, µs, by their names; None if nothing is known."""
+    """Returns quantiles, µs, by name; None without data."""
     ordered = sorted(x for x in seconds if not math.isnan(x))
     if not ordered:
         return None

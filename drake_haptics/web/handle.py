@@ -1,4 +1,4 @@
-"""A device whose handle goes where a page sends it.
+"""A device whose handle a page moves.
 
 A camera's frame C is Drake's: x right, y down, z away from the viewer.
 """
@@ -29,7 +29,7 @@ from drake_haptics.web.frame_maker import HEIGHT_PER_DEPTH, LEAST_DEPTH_M
 def move_in_view(
     X_WG: np.ndarray, by: Sequence[float], X_WC: RigidTransform
 ) -> np.ndarray:
-    """Returns a pose moved as far as a pointer moved over it.
+    """Returns a pose that is moved with the pointer.
 
     Args:
         X_WG: (7,) pose [qw qx qy qz x y z], m.
@@ -47,23 +47,23 @@ def move_in_view(
 def turn_in_view(
     X_WG: np.ndarray, by: Sequence[float], X_WC: RigidTransform
 ) -> np.ndarray:
-    """Returns a pose turned about its origin, as a ball under the pointer.
+    """Returns a pose that is turned about its origin, like a ball under the pointer.
 
     Args:
         X_WG: (7,) pose [qw qx qy qz x y z], m.
-        by: (3,) turns, in half turns: the side towards the viewer goes right and up,
-            and all rolls clockwise.
+        by: (3,) turns, in half turns: the near side moves right and up, and the whole
+            rolls clockwise.
         X_WC: The camera's pose.
     """
     right, up, roll = by
-    # About y, which is down, the near side (-z) goes left; about x it goes down.
+    # About y, which is down, the near side (-z) moves left; about x it moves down.
     turn_W = X_WC.rotation() @ (np.pi * np.array([-up, -right, roll]))
     q_WG = multiply(to_quaternion(turn_W.tolist()), X_WG[:4].tolist())
     return np.concatenate([normalize(q_WG), X_WG[4:]])
 
 
 def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.ndarray:
-    """Returns a pose with its origin in a ball, brought straight to its middle.
+    """Returns a pose whose origin is moved into a ball, towards its middle.
 
     Args:
         X_WG: (7,) pose [qw qx qy qz x y z], m.
@@ -78,7 +78,7 @@ def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.nd
 
 
 class PageHandle(DeviceBackend):
-    """A device that is moved by requests of pages; another part talks with them.
+    """A device that requests of pages move; the owner communicates with the pages.
 
     Without requests the handle stays where it is.
     """
@@ -90,7 +90,7 @@ class PageHandle(DeviceBackend):
 
         Args:
             X_WB: Pose of the device's base in the world of the page.
-            X_BH: Pose of the handle where it starts, and goes home to.
+            X_BH: Start and home pose of the handle.
             workspace_radius_m: Largest distance of the handle from there, m.
 
         Raises:
@@ -117,14 +117,14 @@ class PageHandle(DeviceBackend):
 
     @property
     def gate(self) -> GateState:
-        """Active from the first wrench on until it is closed."""
+        """Active from the first wrench until `close`."""
         return self._handle.gate
 
     def obey(self, asked: dict[str, Any], X_WC: RigidTransform) -> bool:
-        """Obeys a page's request, and counts it.
+        """Executes a page's request, and counts it.
 
         Returns:
-            Whether it was for a handle; if not, it is not counted.
+            Whether it concerned the handle; otherwise it is not counted.
         """
         match asked.get("do"):
             case "move":
@@ -135,7 +135,7 @@ class PageHandle(DeviceBackend):
             case "home":
                 self._X_WG = self._X_WStart
             case "take":
-                pass  # Whoever talks with the pages has seen to that.
+                pass  # The owner has already handled it.
             case _:
                 return False
         self._received += 1
@@ -146,7 +146,7 @@ class PageHandle(DeviceBackend):
         self._rejected += 1
 
     def read(self) -> DeviceReading:
-        """Returns the reading of now."""
+        """Returns the present reading."""
         now_s = monotonic()
         if self._X_WG is not self._reached_for:
             self._reached_for = self._X_WG
@@ -155,13 +155,13 @@ class PageHandle(DeviceBackend):
         return self._handle.read(now_s)
 
     def write(self, command: DeviceCommand) -> None:
-        """Shows a wrench from now on, to those who read it back."""
+        """Shows a wrench from now on, in the readings."""
         self._handle.show(command)
 
     def close(self) -> None:
-        """Shows no force any more; the handle stays where it is."""
+        """Shows no force from now on; the handle stays where it is."""
         self._handle.release()
 
     def get_link_status(self) -> LinkStatus:
-        """Returns the numbers of requests of pages that were taken and refused."""
+        """Returns the numbers of requests that were executed and refused."""
         return LinkStatus(received=self._received, rejected=self._rejected)

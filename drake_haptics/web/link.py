@@ -1,4 +1,4 @@
-"""Opens the page's port, starts its process, and talks with it without waiting."""
+"""Opens the page's port, starts its process, and exchanges messages with it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_PORTS = 100
 
 
 def open_page_port(port: int | None = None) -> socket.socket:
-    """Returns a socket that listens on a port of this machine, for it alone.
+    """Returns a socket that listens on a port for this machine only.
 
     Args:
         port: Port; None takes the first free one from `FIRST_PORT` on.
@@ -45,19 +45,19 @@ def open_page_port(port: int | None = None) -> socket.socket:
 
 _PROCESS = "drake_haptics.web.process"
 _SOCKET_BYTES = 1 << 18
-# Most messages of pages at once: a flood takes no more of a tick than these.
+# Largest number of messages of pages per call, so that a flood delays no tick.
 _MOST_HEARD = 8
 _END_S = 3.0
-# A process that ends sooner would do so again.
+# A process that ends sooner would end again.
 _SHORT_LIFE_S = 2.0
 
 _logger = logging.getLogger(__name__)
 
 
 class PageLink:
-    """Starts the page's process and talks with it; to be closed.
+    """Starts the page's process and exchanges messages with it; must be closed.
 
-    Whatever becomes of the page or its process, no call raises or waits.
+    Whatever happens to the page or its process, no call raises or waits.
     """
 
     def __init__(self, meshcat_url: str, listener: socket.socket | None = None):
@@ -65,8 +65,8 @@ class PageLink:
 
         Args:
             meshcat_url: Address of the Meshcat that the page shows.
-            listener: The result of `open_page_port`, if the port was opened before;
-                it is closed with the link.
+            listener: Socket of `open_page_port`, which is closed with the link.
+                Defaults to a new one.
 
         Raises:
             HapticsError: No port is available.
@@ -75,12 +75,12 @@ class PageLink:
         self._url = f"http://localhost:{self._listener.getsockname()[1]}/"
         parts = urlsplit(meshcat_url)
         self._origin = f"{parts.scheme}://{parts.netloc}"
-        # Messages that a new process gets when it replaces another, by name.
+        # Messages for a process that replaces another, by name.
         self._lasting: dict[str, bytes] = {}
         self._start()
 
     def _start(self) -> None:
-        """Starts the process, with all that was told so far."""
+        """Starts the process, with all messages so far."""
         self._socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
         with other:
             for end in (self._socket, other):
@@ -90,12 +90,12 @@ class PageLink:
             fds = (self._listener.fileno(), other.fileno())
             self._process = subprocess.Popen(
                 [*(sys.executable, "-m", _PROCESS), *map(str, fds), self._origin],
-                # The process ends with this pipe, whatever ended us.
+                # The process ends when this pipe closes, however this process ends.
                 stdin=subprocess.PIPE,
                 pass_fds=fds,
-                # A Ctrl-C at the terminal is for the loop, which then ends the page.
+                # Ctrl-C in the terminal is for the loop, which then closes the page.
                 start_new_session=True,
-                # A file in the current folder is no module.
+                # Files in the current folder must not be imported.
                 env={**os.environ, "PYTHONSAFEPATH": "1"},
             )
         self._started_s, self._is_lost = monotonic(), False
@@ -107,10 +107,10 @@ class PageLink:
         return self._url
 
     def tell(self, message: dict[str, Any]) -> None:
-        """Sends a message that must not get lost; now or with a later call.
+        """Sends a message reliably, now or with a later call.
 
         Args:
-            message: Message with one name; a newer one of that name replaces it.
+            message: Message with one name; a newer one with that name replaces it.
         """
         [name] = message
         self._lasting[name] = json.dumps(message).encode()
@@ -118,7 +118,7 @@ class PageLink:
         self.flush()
 
     def flush(self) -> None:
-        """Sends what `tell` could not send yet, to a new process if need be."""
+        """Sends what `tell` could not yet send, if necessary to a new process."""
         if not self._is_lost and self._process.poll() is not None:
             self._replace_process()
         for name, packet in list(self._untold.items()):
@@ -135,7 +135,7 @@ class PageLink:
         return True
 
     def hear(self) -> list[dict[str, Any]]:
-        """Returns the oldest few of the new requests of pages."""
+        """Returns the oldest new requests of pages."""
         heard: list[dict[str, Any]] = []
         try:
             while len(heard) < _MOST_HEARD:
@@ -145,7 +145,7 @@ class PageLink:
         return heard
 
     def _replace_process(self) -> None:
-        """Starts another process where one has ended before its time, and says so."""
+        """Replaces a process that has ended unexpectedly, with a warning."""
         what = f"The page's process has ended with code {self._process.returncode}"
         self._is_lost = monotonic() - self._started_s < _SHORT_LIFE_S
         if self._is_lost:
@@ -166,7 +166,7 @@ class PageLink:
         assert self._process.stdin is not None
         if self._process.stdin.closed:
             return
-        self._is_lost = True  # It need not come back.
+        self._is_lost = True  # It must not be replaced.
         self.tell({"over": {"why": why}})
         self._process.stdin.close()
         try:

@@ -1,4 +1,4 @@
-"""The page of a running loop: it learns of each tick, and is heard now and then."""
+"""Sends the page of a running loop each tick, and reads its requests."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from drake_haptics.web.messages import Outlook, TickBuffer
 
 # Nothing is drawn there; see `PageCamera.look`.
 _NUDGE = "/page_camera"
-# Until a page tells, the camera is this many radii in front of the workspace: at -y.
+# Initial distance of the camera in front of the workspace (at -y), in its radii.
 _FIRST_DISTANCE = 4.0
-# A page may tell any number; Drake checks the rotation itself.
+# A page may send any number; Drake checks the rotation.
 _FARTHEST_M = 1e4
 
 
 class PageCamera:
-    """Follows the camera of the one page that drives.
+    """Follows the camera of the page that drives.
 
     Attributes:
         X_WC: Pose of the camera: x right, y down, z away.
@@ -35,18 +35,18 @@ class PageCamera:
         self._set(X_WC)
 
     def look(self) -> None:
-        """Reads the poses that the page has sent since."""
+        """Reads the newest pose that the page has sent."""
         X_WC = self._meshcat.GetTrackedCameraPose()
         if X_WC is None or X_WC.IsExactlyEqualTo(self.X_WC):
             return
         if not np.abs(X_WC.translation()).max() <= _FARTHEST_M:
             return
         self._set(X_WC)
-        # A page tells the camera of the picture before: make it draw one more.
+        # A page sends the camera of its previous picture, so make it draw another.
         self._meshcat.SetTransform(_NUDGE, RigidTransform())
 
     def close(self) -> None:
-        """Removes its part of the Meshcat."""
+        """Removes its nodes from the Meshcat."""
         self._meshcat.Delete(_NUDGE)
 
     def _set(self, X_WC: RigidTransform) -> None:
@@ -56,10 +56,10 @@ class PageCamera:
 
 
 def look_from_the_front(p_WQ: np.ndarray, radius_m: float) -> RigidTransform:
-    """Returns the pose X_WC of a camera that looks along y, z upwards.
+    """Returns the pose X_WC of a camera that looks along y, with z up.
 
     Args:
-        p_WQ: (3,) the point that it looks at, m.
+        p_WQ: (3,) point at which it looks, m.
         radius_m: Radius of the workspace about that point, m.
     """
     R_WC = RotationMatrix(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
@@ -72,14 +72,14 @@ _LOOK_PERIOD_S = 1 / 20
 
 
 class LivePage:
-    """A page, and the loop's work for it, one task at a time.
+    """A page, and the loop's work for it, done one task at a time.
 
-    A tick costs `note` and a look at the clock. As all of Drake's Meshcat, it is to be
-    used from the thread that made the Meshcat.
+    Most ticks only call `note` and read the clock. Like all of Drake's Meshcat, it must
+    be used from the thread that made the Meshcat.
 
     Attributes:
         camera: Camera of the page.
-        meshcat_url: Address of what the page shows.
+        meshcat_url: Address of the Meshcat that the page shows.
     """
 
     def __init__(
@@ -94,11 +94,11 @@ class LivePage:
             HapticsError: No port is available.
         """
         self.camera = PageCamera(meshcat, X_WC)
-        # The Meshcat then tells where the camera of this page is.
+        # Makes the Meshcat report the camera of this page.
         self.meshcat_url = f"{meshcat.web_url()}/?tracked_camera=on"
         self._link = PageLink(meshcat.web_url(), listener)
         self._ticks = TickBuffer()
-        # When each of the three is due, and the first of them.
+        # Times at which the three tasks are due, and the earliest.
         self._hear_s = self._show_s = self._look_s = self._due_s = 0.0
 
     @property
@@ -107,32 +107,30 @@ class LivePage:
         return self._link.url
 
     def note(self, time_s: float, latest: Sequence[float], late_s: float) -> None:
-        """Notes a tick, as `TickBuffer.note`."""
+        """Records a tick, as `TickBuffer.note`."""
         self._ticks.note(time_s, latest, late_s)
 
     def tell(self, name: str, body: dict[str, Any]) -> None:
-        """Tells pages something, also those that come later.
+        """Sends a message to all pages, including those that open later.
 
-        Args:
-            name: Name of the message; a newer one of that name replaces it.
-            body: Body of the message, ready for JSON.
+        The body must be ready for JSON. A newer message with the same name replaces it.
         """
         self._link.tell({name: body})
 
     def act(
         self, now_s: float, describe: Callable[[], Outlook]
     ) -> list[dict[str, Any]]:
-        """Does one of the tasks that are due, and returns the requests of pages.
+        """Performs one of the due tasks, and returns the requests of pages.
 
         Args:
-            now_s: Time of any clock that runs, s.
-            describe: Function that returns the state, called if the page is to be told.
+            now_s: Time of any monotonic clock, s.
+            describe: Function that returns the state, called when a frame is due.
         """
         due_s = self._due_s
         if now_s < due_s:
             return []
         heard: list[dict[str, Any]] = []
-        # The task that has waited longest, so that a slow loop leaves nothing out.
+        # The task that has waited longest, so that a slow loop starves none.
         if due_s == self._show_s:
             self._show_s = now_s + _SHOW_PERIOD_S
             self._show(now_s, describe())
@@ -146,11 +144,11 @@ class LivePage:
         return heard
 
     def close(self, why: str = "The run has ended.") -> None:
-        """Ends the page; may be called again."""
+        """Closes the page; may be called again."""
         self._link.close(why)
         self.camera.close()
 
     def _show(self, now_s: float, outlook: Outlook) -> None:
-        """Sends the ticks that were noted."""
+        """Sends the recorded ticks."""
         self._link.flush()
         self._link.send(self._ticks.take(outlook, now_s, self.camera.numbers))

@@ -1,9 +1,9 @@
-"""The messages between the loop and its page, in both directions.
+"""Defines the messages between the loop and its page.
 
-The loop tells of its ticks in packets: a head, and a row for each tick since the last
-packet. They are plain doubles, so that noting a tick is one call that allocates nothing
-and that no number can upset. A page asks in JSON, and may ask for little: it is not to
-be trusted.
+The loop sends its ticks in packets: a header, and a row for each tick since the last
+packet. They are plain doubles, so that recording a tick is one call that allocates
+nothing and accepts any number. A page sends requests in JSON; few are allowed, because
+pages are not trusted.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-# First bytes of packets: numbers here, JSON text where it is a brace.
+# First byte of packets; that of JSON text is a brace.
 KIND = b"#"
-# Names of gates on the page, by their numbers in a packet.
+# Names of gates on the page, by number in a packet.
 GATES = ("idle", "active", "fault", "simulated", "waiting")
 ACTIVE, SIMULATED, WAITING = map(GATES.index, ("active", "simulated", "waiting"))
-# Names of faults, by the numbers of `drake_haptics.device.backend.Fault`.
+# Names of faults, by number of `drake_haptics.device.backend.Fault`.
 FAULTS = ("", "stale", "not finite", "overspeed", "clock", "device")
 
 # Kind, gate, fault, stages of shed load; ticks skipped; clock, silence, s; camera's
@@ -30,14 +30,14 @@ _HEAD = struct.Struct("=cBBBI2d12d3d")
 _TICK = struct.Struct("=14d")
 _MOST_TICKS = 512
 _LARGEST_PACKET = _HEAD.size + _MOST_TICKS * _TICK.size
-# The largest of both, packets and JSON text.
+# Largest size of packets and of JSON text.
 LARGEST_DATAGRAM = 1 << 16
 NOT_KNOWN = math.nan
 
 
 @dataclass(frozen=True)
 class Tick:
-    """The record of a tick; NaN where a value is not known.
+    """The record of a tick, with NaN for unknown values.
 
     Attributes:
         time_s: Simulated time, s.
@@ -49,7 +49,7 @@ class Tick:
             infinite without a contact.
         tau_W: (3,) torque on the handle, N·m.
         f_W: (3,) force on the handle, N.
-        late_s: Delay of its beginning, s.
+        late_s: Lateness of its beginning, s.
     """
 
     time_s: float
@@ -70,9 +70,9 @@ class Telemetry:
     Attributes:
         gate: State of the gate, one of `GATES`.
         fault: Fault of the device, one of `FAULTS`.
-        silent_s: Time for which the device's driver has said nothing new, s.
-        shed: Number of stages of work that were left out.
-        skipped: Ticks lost to stalls since the run began.
+        silent_s: Time for which the device's driver has sent nothing new, s.
+        shed: Number of stages of work that were dropped.
+        skipped: Number of ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
         R_WC: (9,) axes of the camera x right, y down, z away, row by row.
         p_WC: (3,) position of the camera, m.
@@ -94,15 +94,15 @@ class Telemetry:
 
 @dataclass(frozen=True)
 class Outlook:
-    """The state that the page gets besides the ticks, 30 times a second.
+    """The state that the page gets with the ticks, 30 times per second.
 
     Attributes:
         gate: Index into `GATES`.
         p_WH: (3,) position of the handle, m.
         fault: Index into `FAULTS`.
-        silent_s: Time for which the device's driver has said nothing new, s.
-        shed: Number of stages of work that are left out.
-        skipped: Ticks lost to stalls since the run began.
+        silent_s: Time for which the device's driver has sent nothing new, s.
+        shed: Number of stages of work that are dropped.
+        skipped: Number of ticks lost to stalls since the run began.
     """
 
     gate: int
@@ -116,7 +116,7 @@ class Outlook:
 class TickBuffer:
     """Buffers the loop's ticks until they are sent.
 
-    If nobody takes them for long, the latest are left out.
+    If they are not taken for long, the latest are left out.
     """
 
     def __init__(self) -> None:
@@ -125,13 +125,7 @@ class TickBuffer:
         self._end = _HEAD.size
 
     def note(self, time_s: float, latest: Sequence[float], late_s: float) -> None:
-        """Notes a tick.
-
-        Args:
-            time_s: Simulated time, s.
-            latest: (12,) values of `RunStatistics.latest`.
-            late_s: Delay of the tick's beginning, s.
-        """
+        """Records a tick at a simulated time, with `RunStatistics.latest` (12,)."""
         if self._end < _LARGEST_PACKET:
             _TICK.pack_into(self._bytes, self._end, time_s, *latest, late_s)
             self._end += _TICK.size
@@ -141,10 +135,7 @@ class TickBuffer:
     ) -> memoryview:
         """Returns the packet, valid until the next `note`, and begins the next one.
 
-        Args:
-            outlook: State besides the ticks.
-            clock_s: The loop's clock, s.
-            camera: (12,) R_WC row by row and p_WC, m.
+        The clock is the loop's; the camera is R_WC (9,) row by row and p_WC (3,), m.
         """
         counts = outlook.gate, outlook.fault, outlook.shed, outlook.skipped
         times_s = clock_s, outlook.silent_s
@@ -197,17 +188,17 @@ _LARGEST_NUMBER = 1e300
 _LONGEST_NAME = 64
 
 TAKE = "take"
-"""Asks that its page be the one that drives; any page may."""
+"""Request to become the page that drives, which any page may send."""
 
 REFUSED = "refused"
-"""The loop gets {REFUSED: 1} for a message that is not one of those allowed."""
+"""The loop gets {REFUSED: 1} for a message that is not allowed."""
 
 
 def _is_number(value: object) -> bool:
-    """Tells whether it is a finite number, not a truth value."""
+    """Returns whether a value is a finite number, not a Boolean."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    # Also False for NaN.
+    # This is also False for NaN.
     return abs(value) <= _LARGEST_NUMBER
 
 
@@ -227,7 +218,7 @@ def _is_switch(value: object) -> bool:
     return isinstance(value, bool)
 
 
-# The arguments of each verb. A name that ends in "?" may be left out.
+# The arguments of each verb. A name that ends with "?" is optional.
 _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
     # By (right, up, away), in heights of the view at the handle's depth.
     "move": {"by": _are_steps},
@@ -238,11 +229,12 @@ _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
     TAKE: {},
     "set": {"key": _is_name, "to": _is_number},
     "choose": {"key": _is_name, "to": _is_name},
-    "effect": {"name": _is_name, "on": _is_switch},
+    # The state that answers a switch has its number.
+    "effect": {"name": _is_name, "on": _is_switch, "number?": _is_number},
     "handle": {"to": _is_name},
-    # Takes up a device at fault, or lets one that waits show its force.
+    # Recovers a device from a fault, or lets a waiting one show its force.
     "resume": {},
-    "view": {"name": _is_name, "on": _is_switch},
+    "view": {"name": _is_name, "on": _is_switch, "number?": _is_number},
     "camera": {"to": _is_name, "within?": _is_number},
     "reset": {},
     "restart": {},
@@ -252,11 +244,11 @@ _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
 def read_page_request(text: str | bytes) -> dict[str, Any] | None:
     """Returns a page's request; None if it is not exactly one of those allowed.
 
-    A message is JSON text: {"do": verb} and the arguments of the verb, like {"do":
-    "move", "by": [0.1, 0, 0]}. Whether there is such a key or name is not known here.
+    A message is JSON text: {"do": verb} with the arguments of the verb, such as {"do":
+    "move", "by": [0.1, 0, 0]}. Whether a key or name exists is not checked.
 
     Args:
-        text: Message as it came; bytes are never right.
+        text: Received message; bytes are always refused.
     """
     if isinstance(text, bytes):
         return None

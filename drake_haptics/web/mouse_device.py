@@ -14,20 +14,20 @@ from drake_haptics.web.link import open_page_port
 from drake_haptics.web.live_page import LivePage, look_from_the_front
 from drake_haptics.web.messages import NOT_KNOWN, Outlook
 
-# A tick as `RunStatistics.latest`, of which only the wrench is known.
+# A tick as in `RunStatistics.latest`, of which only the wrench is known.
 _NO_FIGURES = (NOT_KNOWN,) * 5
 
 
 class MouseDevice(PageHandle):
-    """A pointer, on a page that shows the Meshcat, moves and turns the handle.
+    """A device whose handle is moved by the pointer on a page that shows the Meshcat.
 
     The page is the cockpit of `drake-haptics run` with the parts that apply here: force
-    and torque, the gate, and the pointer, which it can hand to Meshcat's own control of
-    the camera and take back. Where the camera goes, the directions of the pointer go
-    with it. When no page is open the handle stays where it is. A process of its own
-    serves the page, so that talking with it does not delay the loop.
+    and torque, the gate, and the pointer, which can also control Meshcat's camera.
+    Pointer motions are relative to the camera's view. Without an open page the handle
+    stays where it is. A separate process serves the page, so that communication does
+    not delay the loop.
 
-    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
+    Like all of Drake's Meshcat, it must be used from the thread that made the Meshcat.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class MouseDevice(PageHandle):
         Args:
             meshcat: The Meshcat that the page shows.
             X_WB: Pose of the device's base in the world of the Meshcat.
-            X_BH: Pose of the handle where it starts.
+            X_BH: Pose of the handle at its start.
             workspace_radius_m: Largest distance of the handle from there, m.
             max_force_N: Force of a full bar, N.
             max_torque_Nm: Torque of a full bar, N·m.
@@ -84,7 +84,7 @@ class MouseDevice(PageHandle):
         return self._page.url
 
     def read(self) -> DeviceReading:
-        """Returns the reading of now."""
+        """Returns the present reading."""
         for asked in self._page.act(monotonic(), self._describe):
             if not self.obey(asked, self._page.camera.X_WC):
                 self.note_refused()
@@ -102,7 +102,7 @@ class MouseDevice(PageHandle):
         )
 
     def close(self) -> None:
-        """Tells the page that the run is over, and gives up the port."""
+        """Tells the page that the run is over, and closes the port."""
         super().close()
         self._page.close()
 

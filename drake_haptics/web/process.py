@@ -1,7 +1,7 @@
-"""The process that serves the page: between pages and the loop.
+"""Serves the page in a separate process, between browsers and the loop.
 
-It is started by `PageLink`, imports neither Drake nor NumPy, and ends when the loop's
-process closes its standard input or ends, whatever ended it.
+`PageLink` starts it. It imports neither Drake nor NumPy, and ends when the loop's
+process closes its standard input or ends, however it ends.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def write_changes(changes: dict[str, Any], indent: str = "") -> str:
     """Returns YAML that replaces the same keys in the scene's file.
 
     Args:
-        changes: Sections of a scene with keys and values, as `SceneChanges` has them.
+        changes: Sections of a scene with keys and values, as in `SceneChanges`.
         indent: Indent of each line.
     """
     lines = []
@@ -38,13 +38,13 @@ def write_changes(changes: dict[str, Any], indent: str = "") -> str:
 
 
 _CLOSE_S = 0.5
-# A loop that sends nothing for so long stands still; pages are told as often, s.
+# A loop that sends nothing for this long is stalled; period of messages about it, s.
 _QUIET_S = 0.5
 _STDIN = 0
 
 
 class PageProcess:
-    """Turns the loop's packets into messages for pages, and passes requests on."""
+    """Converts the loop's packets to messages for pages, and forwards requests."""
 
     def __init__(self, listener: socket.socket, link: socket.socket, origin: str):
         """Begins with no page."""
@@ -52,7 +52,7 @@ class PageProcess:
         self._server = PageServer(listener, origin, self._forward)
         self._frames = FrameMaker()
         self._why = ""
-        # Time at which the loop last told of ticks; None before it begins.
+        # Time of the loop's last packet; None before the first one.
         self._heard_s: float | None = None
 
     async def run(self) -> None:
@@ -71,7 +71,7 @@ class PageProcess:
         watch = asyncio.create_task(self._watch())
         await ended.wait()
         watch.cancel()
-        # Connections that wait to be accepted find the socket closed.
+        # Pending connections find the socket closed.
         loop.set_exception_handler(lambda *_: None)
         loop.remove_reader(_STDIN)
         # Read the loop's last messages.
@@ -79,7 +79,7 @@ class PageProcess:
         why = self._why or "The run stopped unexpectedly."
         self._server.tell("over", json.dumps({"over": {"why": why}}))
         server.close()
-        # Pages that do not answer are not waited for.
+        # Does not wait for pages that do not answer.
         await asyncio.wait(
             [asyncio.create_task(server.wait_closed())], timeout=_CLOSE_S
         )
@@ -94,7 +94,7 @@ class PageProcess:
                     self._take(json.loads(packet))
 
     async def _watch(self) -> None:
-        """Tells pages that nothing is heard of the loop, for as long as it is so."""
+        """Tells pages that the loop is silent, for as long as it is."""
         while True:
             await asyncio.sleep(_QUIET_S)
             if self._heard_s is not None:
@@ -103,7 +103,7 @@ class PageProcess:
                     self._server.say(json.dumps({"quiet": {"for_s": quiet_s}}))
 
     def _take(self, message: dict[str, Any]) -> None:
-        """Does what a message of the loop asks for."""
+        """Executes a message of the loop."""
         [(name, body)] = message.items()
         if name == "over":
             self._why = body["why"]
@@ -115,7 +115,7 @@ class PageProcess:
         self._server.tell(name, json.dumps(message))
 
     async def _forward(self, asked: dict[str, Any]) -> None:
-        """Passes on a page's request; waits while the loop does not listen."""
+        """Forwards a page's request; waits while the loop does not listen."""
         loop = asyncio.get_running_loop()
         with suppress(OSError):
             await loop.sock_sendall(self._link, json.dumps(asked).encode())
@@ -128,7 +128,7 @@ def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Takes the file descriptors of port and link, and the Meshcat's origin."""
+    """Runs the process; arguments are descriptors of port and link, and an origin."""
     listener, link = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])
     for end in (listener, link):
         end.setblocking(False)

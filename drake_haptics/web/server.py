@@ -1,4 +1,4 @@
-"""Serves the files of the page on this machine, and talks with its browsers."""
+"""Serves the files of the page on this machine, and exchanges messages with it."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ _TYPES = {
 
 
 def read_page_file(path: str) -> tuple[bytes, str] | None:
-    """Returns a file and its media type; None where there is no such file.
+    """Returns a file and its media type; None if there is no such file.
 
     Args:
-        path: Path of the address, like "/" or "/main.js". Only names of files in the
-            package's folder are found, whatever stands in it.
+        path: Path of the address, such as "/" or "/main.js". Only files in the
+            package's folder are found, whatever the path contains.
     """
     name = "index.html" if path == "/" else path.removeprefix("/")
     for file in files("drake_haptics.web").joinpath("page").iterdir():
@@ -41,29 +41,29 @@ def read_page_file(path: str) -> tuple[bytes, str] | None:
     return None
 
 
-# By any other name this machine is reached only through a stranger's name server.
+# Any other name comes from a foreign name server (DNS rebinding).
 _OWN_NAMES = ("localhost", "127.0.0.1")
-# A page speaks once a frame; more than this would only take time from the loop.
+# A page sends one message per frame; more would only take time from the loop.
 _MESSAGE_PAUSE_S = 0.002
-# Pages that ask for something forbidden, or do not drive, are heard less: many such
-# would keep the page that drives waiting.
+# Pages that send forbidden requests, or do not drive, are read more slowly, so that
+# they do not delay the page that drives.
 _REFUSED_PAUSE_S = 0.1
 _LONGEST_MESSAGE = 256
 _CLOSE_S = 0.5
 # A page that reads too slowly misses frames.
 _MOST_UNREAD_BYTES = 1 << 16
 
-# Whatever a stranger sends to the port does not belong on the terminal.
+# Errors of foreign connections must not appear on the terminal.
 _logger = logging.getLogger(f"{__name__}.websockets")
 _logger.setLevel(logging.CRITICAL)
 
 
 class PageServer:
-    """A page that people on this machine open, of which one at a time drives.
+    """Serves pages on this machine, one of which drives at a time.
 
-    The page that came last drives, until another one asks to; when it goes, the one
-    that drove before it. Pages of other origins cannot connect, and a page that does
-    not drive cannot ask for anything else.
+    The page that opened last drives, until another one asks to; when it closes, the
+    previous one drives. Pages of other origins cannot connect, and a page that does not
+    drive may only ask to drive.
     """
 
     def __init__(
@@ -76,9 +76,9 @@ class PageServer:
 
         Args:
             listener: Socket that listens on a port of this machine.
-            frame_origin: Origin of the Meshcat: the only stranger on the page.
-            forward: Called with the requests of the page that drives, and with
-                {REFUSED: 1} for every message that was refused.
+            frame_origin: Origin of the Meshcat, the only foreign origin in the page.
+            forward: Function that is called with the requests of the page that drives,
+                and with {REFUSED: 1} for every refused message.
         """
         self._listener = listener
         port = listener.getsockname()[1]
@@ -88,7 +88,7 @@ class PageServer:
             " img-src 'self' data:; frame-ancestors 'none'"
         )
         self._forward = forward
-        # The last one drives.
+        # Pages; the last one drives.
         self._pages: list[ServerConnection] = []
         # The first messages to a new page, by name.
         self._lasting: dict[str, str] = {}
@@ -106,21 +106,19 @@ class PageServer:
         )
 
     def tell(self, name: str, message: str) -> None:
-        """Tells all pages something, also those that open later.
+        """Sends JSON to all pages, including those that open later.
 
-        Args:
-            name: Name of the message; a newer one of the same name replaces it.
-            message: JSON text.
+        A newer message with the same name replaces it.
         """
         self._lasting[name] = message
         self.say(message)
 
     def say(self, message: str) -> None:
-        """Tells every page something that later ones need not know."""
+        """Sends a message to the pages that are open now."""
         broadcast(self._pages, message)
 
     def show(self, frame: dict[str, Any]) -> None:
-        """Shows a frame on every page that keeps up."""
+        """Sends a frame to every page that keeps up."""
         for drives in (True, False):
             pages = [
                 page
@@ -132,7 +130,7 @@ class PageServer:
                 broadcast(pages, json.dumps({"frame": {**frame, "drives": drives}}))
 
     async def _talk(self, page: ServerConnection) -> None:
-        """Listens to a page until it goes."""
+        """Reads messages of a page until it closes."""
         self._pages.append(page)
         try:
             for message in self._lasting.values():
@@ -147,7 +145,7 @@ class PageServer:
             self._pages.remove(page)
 
     async def _hear(self, page: ServerConnection, text: str | bytes) -> bool:
-        """Passes on a page's request if it is allowed; returns whether it is."""
+        """Forwards a page's request if it is allowed; returns whether it is."""
         asked = read_page_request(text)
         if asked is not None and asked["do"] == TAKE:
             self._pages.remove(page)
@@ -161,7 +159,7 @@ class PageServer:
     def _answer(
         self, connection: ServerConnection, request: Request
     ) -> Response | None:
-        """Returns a file, or a refusal, or None where a page comes to talk."""
+        """Returns a file, a refusal, or None for a WebSocket connection."""
         host = request.headers.get("Host", "")
         if host.partition(":")[0] not in _OWN_NAMES:
             return connection.respond(HTTPStatus.FORBIDDEN, "not by this name\n")

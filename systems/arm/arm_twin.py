@@ -19,7 +19,7 @@ from drake_haptics.systems.arm.motor_torque import MotorTorque
 
 @dataclass(frozen=True, eq=False)
 class ArmTwin:
-    """Parts of an arm's twin. A part that is None, or 0, is not in the diagram.
+    """The faults of a real arm. A part that is None or 0 is not in the diagram.
 
     All angles and torques of motors are after their gears.
 
@@ -51,7 +51,7 @@ def add_arm_twin(
     hand: HandImpedance,
     free_arm: ArmDynamics,
 ) -> tuple[InputPort, OutputPort, OutputPort]:
-    """Adds the given parts of a twin between an arm and its ports.
+    """Adds the parts of a twin between an arm and its ports.
 
     Args:
         builder: Builder of the arm's diagram; the caller connects the arm's state to
@@ -62,11 +62,11 @@ def add_arm_twin(
         free_arm: Kinematics of the arm without a hand.
 
     Returns:
-        The input for the wrench that the device is to show, the arm's generalized
+        The input for the wrench that the device is to render, the arm's generalized
         force, and the handle's state, as in `HandImpedance`.
 
     Raises:
-        ValueError: A figure is out of its range.
+        ValueError: A value is out of range.
     """
     S = twin.joint_per_motor
     arm_state = plant.get_state_output_port()

@@ -1,4 +1,4 @@
-"""A wrench that reaches the motors whole ticks late."""
+"""Delays the wrench on its way to the motors by whole ticks."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from drake_haptics.common.value_checks import check_at_least, check_positive
 class ForceDelay(Diagram):
     """Delays a wrench by whole periods, on top of the hold before it.
 
-    Each of its holds samples the value that the one before it held until then, so that
-    the output is exactly the wrench of `samples` ticks ago.
+    Each hold samples the value that the one before it held until then, so that the
+    output is exactly the wrench of `samples` ticks ago.
 
     .. pydrake_system::
 
@@ -26,8 +26,8 @@ class ForceDelay(Diagram):
 
     Both are wrenches (6) [τ; f], N·m and N.
 
-    The state is one discrete group (6) per sample, the newest first, the last one
-    `F_delayed`; zero at first. The holds are Drake's own: they take no Python and have
+    The state is one discrete group (6) per sample, newest first, the last of which is
+    `F_delayed`; initially zero. The holds are Drake's, which run no Python and have
     derivatives, so that a stability analysis sees the delay.
     """
 
@@ -39,7 +39,7 @@ class ForceDelay(Diagram):
             samples: Delay in ticks, at least 1.
 
         Raises:
-            ValueError: The period is not positive or there is no sample.
+            ValueError: The period is not positive, or `samples` is less than 1.
         """
         super().__init__()
         check_positive(period_s=period_s)

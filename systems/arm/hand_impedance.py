@@ -1,4 +1,4 @@
-"""Simulates a hand: the impedance with which it holds a handle, and named grips."""
+"""Simulates a hand by the impedance with which it holds a handle; names grips."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class HandGrip:
     Attributes:
         mass_kg: Mass that moves with the handle, kg.
         inertia_kgm2: Rotational inertia about each axis, kg·m².
-        stiffness_N_per_m: Stiffness of the spring to the pose where the hand wants the
-            handle, N/m.
-        damping_Ns_per_m: Damping beside that spring, N·s/m.
+        stiffness_N_per_m: Stiffness of the spring that pulls the handle to where the
+            hand wants it, N/m.
+        damping_Ns_per_m: Damping parallel to that spring, N·s/m.
         rotational_stiffness_Nm_per_rad: Rotational stiffness, N·m/rad.
         rotational_damping_Nms_per_rad: Rotational damping, N·m·s/rad.
     """
@@ -74,10 +74,10 @@ LOOSEST_GRIP = "light"
 class HandImpedance(DifferentiableSystem):
     """A hand as a six-axis spring and damper that follows a path.
 
-    It draws the handle to X_WP X_PH, with P the frame of the path, and passes on the
-    wrench that the device's motors show. Both act in continuous time as generalized
-    forces, τ = Jᵀ (F_hand + F_Ho_W_rendered), which takes one call of the core and one
-    vector port, where applied spatial forces would take many.
+    It pulls the handle to X_WP X_PH, where P is the frame of the path, and passes on
+    the wrench that the device's motors render. Both act in continuous time as
+    generalized forces, τ = Jᵀ (F_hand + F_Ho_W_rendered), which takes one call of the
+    core and one vector port, where applied spatial forces would take many.
 
     .. pydrake_system::
 

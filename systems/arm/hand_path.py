@@ -17,12 +17,12 @@ _LARGEST_TURN_DEG = 120.0
 
 
 class HandPath:
-    """A smooth pose X_WP over time, through waypoints and never beyond them.
+    """A smooth pose X_WP over time that passes through waypoints without overshoot.
 
     Positions and quaternions follow the shape-preserving cubic (Fritsch and Carlson
-    1980), so that speed is continuous and a pause between two equal waypoints stays
-    still. The core evaluates them, because the simulated arm needs them several times
-    per tick.
+    1980), so that the speed is continuous and the pose is constant between two equal
+    waypoints. The core evaluates them, because the simulated arm needs them several
+    times per tick.
     """
 
     def __init__(
@@ -35,10 +35,10 @@ class HandPath:
         """Constructs the path.
 
         Args:
-            times_s: Times of the waypoints, rising, the first one 0, s.
+            times_s: Times of the waypoints, increasing from 0, s.
             poses: Poses X_WP at these times.
-            periodic: Whether the path starts again after the last time, at which the
-                pose must be the first one's; else the path begins and ends at rest and
+            periodic: Whether the path repeats after the last time, at which the pose
+                must be the first one. Otherwise the path begins and ends at rest and
                 stays at its end.
 
         Raises:
@@ -113,8 +113,8 @@ def _fit(times: np.ndarray, samples: np.ndarray, periodic: bool) -> np.ndarray:
         return np.zeros((0, 4, 7))
     breaks = times
     if periodic:
-        # One more segment at either side, so that the slope at the seam is found as at
-        # any other waypoint. A whole turn arrives at -q.
+        # One more segment at each end gives the seam a slope as at any other waypoint.
+        # After a whole turn the quaternion is -q.
         sign = np.ones(7)
         sign[:4] = np.sign(samples[0, :4] @ samples[-1, :4])
         before, after = samples[-2] * sign, samples[1] * sign

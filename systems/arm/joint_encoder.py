@@ -1,4 +1,4 @@
-"""Encoders on an arm's motors, and the handle's motion that a driver gets from them."""
+"""Simulates encoders on an arm's motors and the motion that a driver computes."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class JointEncoder(LeafSystem):
       world.
 
     The state is the handle's (13) and the counted angles of the last W + 1 ticks,
-    newest first, 6 each. An unrestricted update writes it every period from 0 s on:
-    those come before all discrete updates of the same time, so that counting adds no
-    tick of delay. When a simulation begins the window is filled with the first count.
+    newest first, 6 each. An unrestricted update writes it every period from 0 s on.
+    Drake calls it before all discrete updates of the same time, so that counting adds
+    no tick of delay. At initialization the window is filled with the first count.
     """
 
     no_derivatives = "rounds angles: leave device.twin.encoder out"

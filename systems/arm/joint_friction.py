@@ -1,4 +1,4 @@
-"""Dry friction of an arm's motors, which holds the arm until it breaks away."""
+"""Simulates dry friction of an arm's motors."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ class JointFriction(LeafSystem):
 
         τ = −clamp(k (q − w) + d q̇, ±τ_c) − b q̇,
 
-    with the anchor w, which at every tick is pulled after the motor so far that
-    `|k (q − w)| ≤ τ_c`. So a motor below its breakaway torque is held by a damped
-    spring, which does not creep and does not chatter; above it the motor slides against
-    τ_c. In continuous time the element never gives more energy than its spring took.
+    with the anchor w, which at every tick follows the motor so far that `|k (q − w)| ≤
+    τ_c`. So a damped spring holds a motor below its breakaway torque without creep or
+    chatter; above it the motor slides against τ_c. In continuous time the element never
+    returns more energy than its spring has stored.
 
-    A motor gives way by τ_c/k before it slides. k is as large as one step of the
-    integrator per tick can follow: k = (0.4/T)² times the inertia that the motor moves
-    while all other motors are free.
+    A motor moves by τ_c/k before it slides. k is as large as one step of the integrator
+    per tick can follow: k = (0.4/T)² times the inertia that the motor moves while all
+    other motors are free.
 
     .. pydrake_system::
 
@@ -60,7 +60,7 @@ class JointFriction(LeafSystem):
 
         Args:
             plant: Finalized plant of the arm. At its default angles no bristle is
-                stretched, and its inertia there counts.
+                stretched, and its inertia is taken there.
             period_s: The tick T, s.
             joint_per_motor: S (6, 6) in q = S q_motor, invertible.
             coulomb_Nm: (6,) dry friction τ_c of each motor after its gear, N·m.
@@ -99,7 +99,7 @@ class JointFriction(LeafSystem):
 
     @property
     def break_away_rad(self) -> np.ndarray:
-        """(6,) angle that each motor gives way before it slides, rad after its gear."""
+        """(6,) angle that each motor moves before it slides, rad after its gear."""
         return self._break_away.copy()
 
     def calc_stored_energy(self, context: Context) -> float:

@@ -1,4 +1,4 @@
-"""Turns a wrench into torques of an arm's motors, up to their limits."""
+"""Converts a wrench into torques of an arm's motors, within their limits."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class MotorTorque(DifferentiableSystem):
 
     τ_motor = clamp(Sᵀ J_WHᵀ F_Ho_W_rendered), where each amplifier clamps its own motor
     and q = S q_motor; the joints get τ = S⁻ᵀ τ_motor. A wrench within the limits of all
-    motors arrives as it is. Otherwise J_WH⁻ᵀ S⁻ᵀ τ_motor arrives, which has another
-    direction than the commanded wrench.
+    motors arrives as it is. Otherwise J_WH⁻ᵀ S⁻ᵀ τ_motor arrives, whose direction
+    differs from that of the commanded wrench.
 
     .. pydrake_system::
 
@@ -35,8 +35,7 @@ class MotorTorque(DifferentiableSystem):
       world, N·m and N.
     * `generalized_force` (6) is for the plant, N·m.
 
-    Its derivative is that of the motors that are not at their limit; a motor at its
-    limit has none.
+    Motors at their limit contribute nothing to its derivative.
     """
 
     def __init__(
@@ -69,7 +68,7 @@ class MotorTorque(DifferentiableSystem):
         )
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
-        # Only a hand depends on the time, and the arm has no hand.
+        # Only a hand depends on time, and this arm has no hand.
         torque = self._arm.calc_joint_torques(
             0.0, self._arm_state.Eval(context), self._F_Ho_W_rendered.Eval(context)
         )

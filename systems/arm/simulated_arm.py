@@ -27,11 +27,10 @@ from drake_haptics.systems.framework.differentiable_system import export_parts
 
 _MAX_ITERATIONS = 100
 _LARGEST_STEP_RAD = 0.3
-# rad and m. It takes one more Newton step, for the last digits, which stiff springs at
-# the handle would turn into forces.
+# rad and m: so small because stiff springs at the handle turn errors into forces.
 _TOLERANCE = 1e-12
-# Bound on the Jacobian with lengths in units of the arm's own: below it, some motion of
-# the handle needs ten times the joint speed of the easiest one.
+# Bound on the Jacobian with lengths in units of the arm's length: below it, some motion
+# of the handle needs ten times the joint speed of the easiest one.
 _ARM_LENGTH_M = 0.2
 _SMALLEST_SINGULAR_VALUE = 0.1
 
@@ -46,14 +45,14 @@ def solve_arm_positions(
     X_WH: RigidTransform,
     q_guess: np.ndarray,
 ) -> np.ndarray:
-    """Returns joint positions that put the handle at a pose, by Newton steps.
+    """Returns joint positions that put the handle at a pose, by Newton's method.
 
     Args:
         plant: Finalized plant of the arm, six joints.
         handle: Body of the arm that is held.
         X_WH: Pose of the handle to reach.
-        q_guess: Joint positions to start from, rad; they decide which of several
-            solutions is found.
+        q_guess: Joint positions to start from, rad; they decide between several
+            solutions.
 
     Raises:
         UnreachableError: There is no solution near the guess, or the arm is singular
@@ -99,8 +98,8 @@ class SimulatedArm(Diagram):
 
     The arm moves in continuous time: a discrete plant would hide the instability of a
     sampled loop. It starts at rest with its handle where the hand wants it. Gravity is
-    off, as on a device that compensates its own weight. It shows every wrench at once
-    and tells its true pose, but for the faults that an `ArmTwin` names.
+    off, as on a device that compensates its own weight. It renders every wrench at once
+    and reports its true pose, except for the faults that an `ArmTwin` names.
 
     .. pydrake_system::
 
@@ -140,8 +139,8 @@ class SimulatedArm(Diagram):
 
         Raises:
             UnreachableError: The path starts out of the arm's reach.
-            ValueError: The arm is not a chain of six revolute joints, or a figure of
-                the twin is out of its range.
+            ValueError: The arm is not a chain of six revolute joints, or a value of the
+                twin is out of range.
         """
         super().__init__()
         builder = DiagramBuilder()

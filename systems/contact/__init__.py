@@ -1,1 +1,1 @@
-"""The systems from poses to contacts, and from contacts to forces."""
+"""Systems that find contacts and calculate their forces."""

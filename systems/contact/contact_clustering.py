@@ -1,8 +1,7 @@
-"""Decides how stiffly each contact pushes, given all other contacts."""
+"""Clusters contacts, so that many are not stiffer than one."""
 
 from __future__ import annotations
 
-import math
 import warnings
 from dataclasses import dataclass
 from typing import Literal, get_args, overload
@@ -20,7 +19,8 @@ from drake_haptics._core import (
     share_stiffness,
     thin_contacts,
 )
-from drake_haptics.scene.validation import SceneWarning, question_depth
+from drake_haptics.common.value_checks import check_at_least, check_positive
+from drake_haptics.scene.validation import SceneWarning, make_depth_warning
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -31,7 +31,7 @@ ClusteringMethod = Literal["shared", "octree"]
 
 @dataclass(frozen=True)
 class ClusteringRule:
-    """The rule that says which contacts push, and which count as one; immutable.
+    """The rule that decides which contacts push and which count as one; immutable.
 
     Attributes:
         method: Name of the method, "shared" or "octree".
@@ -51,22 +51,19 @@ class ClusteringRule:
         """Checks the rule."""
         if self.method not in get_args(ClusteringMethod):
             raise ValueError(f"method must be 'shared' or 'octree', is {self.method!r}")
-        tolerance_m, delta_m = self.tolerance_m, self.delta_m
-        if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
-            raise ValueError(
-                f"tolerance_m must be finite and not negative, is {tolerance_m}"
-            )
+        check_at_least(0, tolerance_m=self.tolerance_m)
         if self.method == "octree":
-            if delta_m is None or not (delta_m > 0.0 and math.isfinite(delta_m)):
-                raise ValueError(f"delta_m must be finite and positive, is {delta_m}")
-        elif delta_m is not None:
+            if self.delta_m is None:
+                raise ValueError("delta_m must be given for octree")
+            check_positive(delta_m=self.delta_m)
+        elif self.delta_m is not None:
             raise ValueError(
                 f"delta_m is for octree only; the method is {self.method!r}"
             )
 
 
 class ContactClustering(DifferentiableSystem):
-    """Keeps many contacts from being stiffer than one.
+    """Clusters contacts, so that many are not stiffer than one.
 
     There are two methods, by name:
 
@@ -121,11 +118,10 @@ class ContactClustering(DifferentiableSystem):
             method: Name of the method, "shared" or "octree".
             tolerance_m: Distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
-            enable_load_shedding: Whether the loop sheds load, and there is a port for
-                that.
+            enable_load_shedding: Whether the loop sheds load, which adds a port.
             warns_deep: Whether to warn of the first contact that is deeper than ten
-                tolerances, for programs without `run`, which warns at the end: writing
-                may delay a loop that a hand holds.
+                tolerances. `run` warns at the end instead, because writing may delay a
+                loop that a hand holds.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is
@@ -153,7 +149,7 @@ class ContactClustering(DifferentiableSystem):
         )
 
     def get_rule(self, context: Context) -> ClusteringRule:
-        """Returns the rule that says which contacts push, and which count as one.
+        """Returns the rule that decides which contacts push and which count as one.
 
         Args:
             context: Context of this system.
@@ -206,12 +202,12 @@ class ContactClustering(DifferentiableSystem):
             least_distance_m: Signed distance of the deepest contact, m.
             tolerance_m: Distance below which contacts push, m.
         """
-        question = question_depth(-least_distance_m, tolerance_m)
-        if self._warns_deep and question:
+        warning = make_depth_warning(-least_distance_m, tolerance_m)
+        if self._warns_deep and warning:
             self._warns_deep = False
             rendering = self.GetSystemPathname().split("::")[-2]
-            sentence = f"{rendering!r} at {context.get_time():.4g} s: {question}"
-            # Drake calls this, so that the user's line is not known.
+            sentence = f"{rendering!r} at {context.get_time():.4g} s: {warning}"
+            # Drake calls this, so the user's line is not known.
             warnings.warn(sentence, SceneWarning, stacklevel=1)
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
@@ -242,7 +238,7 @@ def _cluster_fewer(
     rule: ClusteringRule,
     load_shedding: np.ndarray,
 ) -> ClusterSet | AutoDiffClusterSet:
-    """Applies a rule where the loop sheds load."""
+    """Applies a rule while the loop sheds load."""
     _, reach_share, cell_m = load_shedding
     if cell_m > 0.0:
         contacts = thin_contacts(contacts, cell_m)

@@ -1,4 +1,4 @@
-"""Carries contacts along between two queries."""
+"""Extrapolates contacts between two queries."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class ContactExtrapolator(DifferentiableSystem):
     witness points are those of the features, but the center of pressure of flush faces
     stays on both bodies. That is exact for a vertex over a facet and for two edges
     while these are the features, and otherwise wrong to second order in the motion
-    since the query. No contact comes or goes: pieces that come within the tolerance
-    between two queries are contacts from the next query on.
+    since the query. No contact appears or vanishes: pieces that come within the
+    tolerance between two queries are contacts from the next query on.
 
     .. pydrake_system::
 
@@ -99,7 +99,7 @@ class ContactExtrapolator(DifferentiableSystem):
 
 
 def _read_poses(ports: Sequence[InputPort], context: Context) -> np.ndarray:
-    """Returns poses one after another, (7 m,)."""
+    """Returns concatenated poses, (7 m,)."""
     if len(ports) == 1:
         return ports[0].Eval(context)
     return np.concatenate([port.Eval(context) for port in ports])
@@ -108,7 +108,7 @@ def _read_poses(ports: Sequence[InputPort], context: Context) -> np.ndarray:
 def _differentiate_poses(
     ports: Sequence[InputPort], at: AutoDiffPoint
 ) -> AutoDiffVector:
-    """Returns poses one after another, (7 m,), with their derivatives."""
+    """Returns concatenated poses, (7 m,), with their derivatives."""
     poses = [at[port.get_name()] for port in ports]
     return AutoDiffVector(
         np.concatenate([pose.value for pose in poses]),

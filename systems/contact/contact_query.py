@@ -1,9 +1,8 @@
-"""Finds all contacts between the tool and objects, and reads how the objects move."""
+"""Finds the contacts between the tool and objects; reads the objects' motion."""
 
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -29,6 +28,7 @@ from drake_haptics._core import (
     differentiate_contacts,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -82,17 +82,17 @@ class ContactQuery(DifferentiableSystem):
 
     `contact_chain` is a `drake_haptics._core.ContactChain`, which goes on to forces by
     the `rule` of `ContactClustering` and the `gains` of `PenaltyForce`. A `HapticTool`
-    that reads it asks for no port between, and `contacts` then shows the contacts that
-    the tool's step has found. It has no value under AutoDiffXd.
+    that reads it evaluates none of the ports in between, and `contacts` then shows the
+    contacts that the tool's step has found. It has no value under AutoDiffXd.
 
     The tolerance is an abstract parameter of the Context (index 1), a float; see
     `set_tolerance`.
 
     The search starts from its last result in the same Context (paper, 5.2), and the
     first time from the abstract parameter `hint` (index 0), the result of a query in
-    another Context. Without a hint it starts from nothing, and can find another way out
-    of a deep penetration; so call `prepare_conversion` before the parameters are
-    copied. Objects with a pose of their own are placed once for each Context.
+    another Context. Without a hint it starts from scratch and may find another way out
+    of a deep penetration, so call `prepare_conversion` before the parameters are
+    copied. Objects with a fixed pose are placed once for each Context.
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
     features stay the same. There every search starts from the hint, and its result is a
@@ -121,10 +121,9 @@ class ContactQuery(DifferentiableSystem):
                 search walks from its last result, or "global", the least of all; see
                 `drake_haptics.SceneTracker`.
             max_walk_steps: Bound on the steps of such a walk, at least 1.
-            enable_load_shedding: Whether the loop sheds load, and there is a port for
-                that.
-            enable_chain: Whether there is the port `contact_chain`, with its inputs;
-                all objects must rest then.
+            enable_load_shedding: Whether the loop sheds load, which adds a port.
+            enable_chain: Whether to add the port `contact_chain` with its inputs; then
+                no object may move.
 
         Raises:
             ValueError: The tolerance is negative or not finite, there is no object, a
@@ -132,11 +131,10 @@ class ContactQuery(DifferentiableSystem):
                 is a chain with an object that moves.
         """
         super().__init__()
-        _check_tolerance(tolerance_m)
+        check_at_least(0, tolerance_m=tolerance_m)
         if depth not in get_args(DepthSearch):
             raise ValueError(f"depth must be 'tracked' or 'global', is {depth!r}")
-        if max_walk_steps < 1:
-            raise ValueError(f"max_walk_steps must be at least 1, is {max_walk_steps}")
+        check_at_least(1, max_walk_steps=max_walk_steps)
         if not objects:
             raise ValueError("objects must not be empty")
         if len({item.name for item in objects}) < len(objects):
@@ -169,9 +167,9 @@ class ContactQuery(DifferentiableSystem):
             {self.all_input_ports_ticket(), from_tolerance},
         )
         self._law: tuple[InputPort, InputPort] | None = None
-        # What a Context remembers of its last search, which never changes a result by
-        # more than round-off. As a cache entry, passing on another tolerance costs a
-        # tick nothing.
+        # A Context remembers its last search, which never changes a result by more than
+        # round-off. As a cache entry it picks up another tolerance without cost per
+        # tick.
         if enable_chain:
             self._law = self._declare_law()
             self._eval_tracker = self.DeclareAbstractOutputPort(
@@ -225,29 +223,29 @@ class ContactQuery(DifferentiableSystem):
             ValueError: The distance is negative or not finite.
         """
         self.ValidateContext(context)
-        _check_tolerance(tolerance_m)
+        check_at_least(0, tolerance_m=tolerance_m)
         context.get_mutable_abstract_parameter(self._tolerance).set_value(tolerance_m)
 
     def prepare_conversion(self, context: Context) -> None:
-        """Writes the last search into the parameter `hint`.
+        """Stores the last search in the parameter `hint`.
 
         Args:
-            context: Context of this system, in which the query is evaluated if it has
-                not been.
+            context: Context of this system, in which the query is evaluated if
+                necessary.
         """
         self._contacts.Eval(context)
         context.get_mutable_abstract_parameter(self._hint).set_value(
             copy.deepcopy(self._eval_tracker(context))
         )
 
-    def learn(
+    def take_hint(
         self, context: Context, other: ContactQuery, other_context: Context
     ) -> None:
-        """Begins from the last search of another query, if that has the same pieces.
+        """Takes over the last search of another query that has the same pieces.
 
         Args:
             context: Context of this system, in which nothing has been evaluated yet.
-            other: Other query, which is evaluated if it has not been.
+            other: Other query, which is evaluated if necessary.
             other_context: Context of the other query.
         """
         if self._list_searched() == other._list_searched():
@@ -336,18 +334,11 @@ class ContactQuery(DifferentiableSystem):
         contacts.set_value(tracker.query(X_WT, reach_m))
 
 
-def _check_tolerance(tolerance_m: float) -> None:
-    if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
-        raise ValueError(
-            f"tolerance_m must be finite and not negative, is {tolerance_m}"
-        )
-
-
 class ObjectMotions:
-    """Poses and velocities of all objects; those that move are read from ports.
+    """Reads the poses and velocities of all objects.
 
-    Gives its system the input ports `X_WO_<name>` (7) and `V_WO_<name>` (6) for each
-    object without a pose of its own. All other objects are placed here, once.
+    It adds the input ports `X_WO_<name>` (7) and `V_WO_<name>` (6) to its system for
+    each object that moves. All other objects are placed once, here.
     """
 
     def __init__(self, system: LeafSystem, objects: Sequence[ContactObject]):
@@ -369,8 +360,8 @@ class ObjectMotions:
         for i, item in enumerate(objects):
             if item.X_WO is not None:
                 self._p_WO[i] = item.X_WO.translation()
-        # There can be a thousand objects: those at rest are passed to the core only
-        # here.
+        # There can be a thousand objects, so those at rest are passed to the core only
+        # once.
         self._at_rest = ObjectFrames(self._p_WO, self._V_WO)
 
     def read(self, context: Context) -> ObjectFrames:

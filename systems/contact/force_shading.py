@@ -1,4 +1,4 @@
-"""Turns the normals of contacts to those of smooth surfaces."""
+"""Interpolates the normals of contacts, so that meshes feel smooth."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from drake_haptics.systems.framework.differentiable_system import (
 class ForceShading(DifferentiableSystem):
     """Normals interpolated over the triangles under the witness points.
 
-    The direction of the force follows the smooth surface that a mesh stands for
-    instead of jumping from facet to facet (paper, 4.4.1; Morgenbesser and
-    Srinivasan 1996). Edges that turn by the crease angle or more stay sharp. Only
-    normals change, by 45° at most, so that no contact pulls.
+    The direction of the force follows the smooth surface that a mesh stands for instead
+    of jumping from facet to facet (paper, 4.4.1; Morgenbesser and Srinivasan 1996).
+    Edges that turn by the crease angle or more stay sharp. Only normals change, and by
+    at most 45°, so that no contact pulls.
 
     .. pydrake_system::
 
@@ -45,8 +45,8 @@ class ForceShading(DifferentiableSystem):
     found. Both `contacts` are a `drake_haptics.ContactSet`, immutable.
 
     Pieces of a decomposition that were not made from triangles (methods "hull" and
-    "coacd") keep the normals of their facets. A shaded force is not the gradient of
-    any energy: see the documentation for what a closed path can gain.
+    "coacd") keep the normals of their facets. A shaded force is not the gradient of any
+    energy: the documentation states how much a closed path can gain.
 
     Under AutoDiffXd both `contacts` are a `drake_haptics._core.AutoDiffContactSet`.
     Derivatives of the normals are complete: normals turn with the bodies and with the

@@ -20,7 +20,7 @@ class FrictionReaction(DifferentiableSystem):
     """The reaction of `StickSlipFriction` on objects that can move.
 
     At each cluster the object gets the opposite of the force on the tool, at the same
-    point, so that tool and objects keep their momentum.
+    point, so that total momentum is conserved.
 
     .. pydrake_system::
 

@@ -1,4 +1,4 @@
-"""Drops work where a tick takes too long, in a stated order."""
+"""Drops work in a fixed order when ticks take too long."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import AutoDiffVector
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -21,10 +22,10 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 # Work that is dropped, in this order.
 SHED_STAGES = ("drawing", "far near-contacts", "fine clusters")
-# Ticks over the budget within which a stage is dropped: a single tick that the
-# operating system has delayed drops next to nothing, and forces change smoothly.
+# Ticks over the budget that drop a stage: so many that forces change smoothly and a
+# single tick that the operating system delays drops next to nothing.
 _TICKS_TO_DROP = 50
-# Ticks well below the budget within which a stage comes back.
+# Ticks well below the budget that restore a stage.
 _TICKS_TO_RESTORE = 1000
 _WELL_BELOW = 0.8
 # Share of the tolerance up to which near contacts are always found, and push.
@@ -35,7 +36,7 @@ class TickMeter:
     """Times the work of each tick, from its first event to its last."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter):
-        """Begins without a tick.
+        """Constructs the meter.
 
         Args:
             clock: Function that returns the time, s.
@@ -46,15 +47,15 @@ class TickMeter:
 
     @property
     def busy_s(self) -> float:
-        """Time of the last whole tick, s; 0 before there is one."""
+        """Duration of the last complete tick, s; 0 before the first one."""
         return self._busy_s
 
     def begin(self) -> None:
-        """Notes that a tick begins."""
+        """Begins a tick."""
         self._start_s = self._clock()
 
     def end(self) -> None:
-        """Notes that the tick has ended; does nothing between two ticks."""
+        """Ends the tick; does nothing between two ticks."""
         if self._start_s < math.inf:
             self._busy_s = self._clock() - self._start_s
             self._start_s = math.inf
@@ -80,7 +81,7 @@ class TickEnd(DifferentiableSystem):
         """
         super().__init__()
         self._meter = meter
-        # Publish events of a time come after all other work of the tick before.
+        # Publish events come after all other work of the previous tick.
         self.DeclarePeriodicPublishEvent(period_s, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus:
@@ -89,9 +90,9 @@ class TickEnd(DifferentiableSystem):
 
 
 class LoadShedding(DifferentiableSystem):
-    """Says how much work a loop leaves out, so that its ticks stay within a budget.
+    """Decides how much work a loop drops, so that its ticks stay within a budget.
 
-    Work is dropped in stages, each by degrees, and comes back in the reverse order:
+    Work is dropped in stages, each gradually, and restored in the reverse order:
 
     1. drawing: no new frame is begun;
     2. far near-contacts: the distance within which contacts are searched for, push and
@@ -133,13 +134,9 @@ class LoadShedding(DifferentiableSystem):
             ValueError: A period, the budget or the cell is not positive.
         """
         super().__init__()
-        for name, value in [
-            ("period_s", period_s),
-            ("budget_s", budget_s),
-            ("largest_cell_m", largest_cell_m),
-        ]:
-            if not (value > 0.0 and math.isfinite(value)):
-                raise ValueError(f"{name} must be finite and positive, is {value}")
+        check_positive(
+            period_s=period_s, budget_s=budget_s, largest_cell_m=largest_cell_m
+        )
         self._meter = meter
         self._budget_s = budget_s
         self._largest_cell_m = largest_cell_m
@@ -177,5 +174,5 @@ class LoadShedding(DifferentiableSystem):
         return at.state
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
-        """Returns the state as it is: nothing is dropped by a linearization."""
+        """Returns the state unchanged: a linearization drops nothing."""
         return at.state

@@ -1,4 +1,4 @@
-"""Answers contact clusters with forces."""
+"""Calculates the forces of contact clusters."""
 
 from __future__ import annotations
 
@@ -119,8 +119,8 @@ class PenaltyForce(DifferentiableSystem):
       each cluster and the wrench on each object.
 
     Under AutoDiffXd `clusters` is an `AutoDiffClusterSet` and `contact_wrench` an
-    `AutoDiffPenaltyWrench` of `drake_haptics._core`. K and B have derivatives of
-    their own there, by which the tool's implicit step changes.
+    `AutoDiffPenaltyWrench` of `drake_haptics._core`. K and B have derivatives there
+    too, which the tool's implicit step needs.
 
     k and k_v are an abstract parameter of the Context, of type `ContactGains`; see
     `set_gains`. The output `gains` shows it, and has no value under AutoDiffXd.
@@ -143,7 +143,7 @@ class PenaltyForce(DifferentiableSystem):
             objects: Objects of the `ContactQuery`, in the same order.
             stiffness_N_per_m: Default stiffness k of each object, N/m.
             damping_Ns_per_m: Default damping k_v of each object, N·s/m.
-            enable_chain: Whether there is the port `contact_chain`.
+            enable_chain: Whether to add the port `contact_chain`.
             warn_of_depth: Function `warn_of_depth` of the `ContactClustering`, which
                 the chain bypasses. Defaults to no warning.
 
@@ -189,9 +189,9 @@ class PenaltyForce(DifferentiableSystem):
         self.DeclareAbstractOutputPort(
             "gains", Value[object], self._show_gains, {self.pa_ticket()}
         )
-        # A plant asks for the wrench on the tool and for the reaction on objects that
-        # move: these share the result that `contact_wrench` keeps. A haptic loop asks
-        # for `wrench_model` alone, and calling the core then takes less time.
+        # A plant reads the wrench on the tool and the reaction on objects that move,
+        # which share the cached `contact_wrench`. A haptic loop reads only
+        # `wrench_model`, for which calling the core takes less time.
         self._eval_wrench: Callable[[Context], PenaltyWrench] = (
             self._contact_wrench.Eval if self._moving else self._calc_wrench
         )

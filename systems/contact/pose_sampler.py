@@ -12,6 +12,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import AutoDiffVector
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -23,8 +24,8 @@ _IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 class PoseSampler(DifferentiableSystem):
     """Holds poses as they were at the last sample.
 
-    Its outputs change only when it samples, so that systems that read them calculate no
-    more often.
+    Its outputs change only when it samples, so that systems that read them calculate
+    only then.
 
     .. pydrake_system::
 
@@ -53,8 +54,7 @@ class PoseSampler(DifferentiableSystem):
             ValueError: The period is not positive.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         ports = ["X_WT", *(f"X_WO_{name}" for name in names)]
         self._inputs = [self.DeclareVectorInputPort(port, 7) for port in ports]
         self._groups = [self.DeclareDiscreteState(_IDENTITY) for _ in ports]
@@ -64,7 +64,7 @@ class PoseSampler(DifferentiableSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._sample)
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
-        """Returns a pose that is held, with its derivatives."""
+        """Returns a held pose with its derivatives."""
         start = 7 * int(self.GetOutputPort(port).get_index())
         return AutoDiffVector(
             at.state.value[start : start + 7], at.state.gradient[start : start + 7]

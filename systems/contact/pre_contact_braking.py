@@ -21,14 +21,14 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 
 class PreContactBraking(DifferentiableSystem):
-    """Viscous force against the approach of surfaces that do not touch yet.
+    """Viscous force against the approach of surfaces that do not yet touch.
 
     At each contact with 0 < d < D, where D is the braking distance, the tool is pushed
     with b s w v along the normal, where v is the speed of approach at the contact; it
-    is never pulled, nor held back when it leaves (McNeely, Puterbaugh and Troy 1999).
+    is never pulled, nor slowed when it moves away (McNeely, Puterbaugh and Troy 1999).
     The profile w = 4 (d/D) (1 - d/D) fades at both ends, so that the wrench is
-    continuous in pose and velocity. On a straight path to a surface a mass m loses
-    2 b D / (3 m) of its speed, at any speed.
+    continuous in pose and velocity. On a straight path to a surface a mass m loses 2 b
+    D / (3 m) of its speed, at any speed.
 
     The share s keeps contacts with like normals from adding up, however finely a
     surface is cut, and leaves all other contacts alone (core/law/braking.h). The
@@ -48,10 +48,10 @@ class PreContactBraking(DifferentiableSystem):
         - wrench_model
         - F_O_W (with objects that move)
 
-    `contacts` is a `drake_haptics.ContactSet`; contacts must have been searched for up
-    to D at least. Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are
-    spatial velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
-    `load_shedding` is that of `LoadShedding`: D shrinks to its share.
+    `contacts` is a `drake_haptics.ContactSet`; the query must find contacts up to at
+    least D. Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are spatial
+    velocities [ω; v] of the frame's origin in the world, rad/s and m/s. `load_shedding`
+    is that of `LoadShedding`: D shrinks to its share.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
@@ -78,8 +78,7 @@ class PreContactBraking(DifferentiableSystem):
             objects: Objects of the `ContactQuery`, in the same order.
             damping_Ns_per_m: Damping b half-way to the surface, N·s/m.
             distance_m: Distance D at which braking begins, m.
-            enable_load_shedding: Whether the loop sheds load, and there is a port for
-                that.
+            enable_load_shedding: Whether the loop sheds load, which adds a port.
 
         Raises:
             ValueError: The damping is negative, the distance not positive, or one of
@@ -152,7 +151,7 @@ class PreContactBraking(DifferentiableSystem):
         )
 
     def _relieve(self, reach_share: float) -> BrakingGains:
-        """Returns the gains where braking begins only at a share of D."""
+        """Returns the gains with a share of the distance D."""
         return BrakingGains(self._damping_Ns_per_m, reach_share * self._distance_m)
 
     def _keep_wrenches(self, context: Context, value: AbstractValue) -> None:

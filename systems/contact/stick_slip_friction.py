@@ -19,6 +19,7 @@ from drake_haptics._core import (
     FrictionStep,
     StickSlipModel,
 )
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
@@ -31,12 +32,12 @@ _NOTHING_MOVES = np.zeros(0)
 class StickSlipFriction(DifferentiableSystem):
     """Friction of the clusters, after Hayward and Armstrong (2000; paper, 4.4.2).
 
-    Each contact has an adhesion point and is drawn back to it by a force that grows
+    Each contact has an adhesion point and is pulled back to it by a force that grows
     with the displacement z and with the normal force N. It sticks up to the static
     limit, r μ N after `break_away_m`, and slides at μ N. The force is a function of
-    displacement only: at rest nothing creeps. Contacts hand their adhesion on from
-    tick to tick, so that the force does not jump where they merge, split or cross a
-    seam; and no change of the normal force makes energy. The formulas are in
+    displacement only: at rest nothing creeps. Contacts pass their adhesion on from tick
+    to tick, so that the force does not jump where they merge, split or cross a seam,
+    and no change of the normal force creates energy. The formulas are in
     `core/law/friction_law.h` and `core/law/friction_tracking.h`.
 
     .. pydrake_system::
@@ -47,6 +48,8 @@ class StickSlipFriction(DifferentiableSystem):
         - contact_wrench
         - X_WT
         - X_WO_<name of each object that moves>
+        - V_WT (with the chain)
+        - contact_chain (with the chain)
         output_ports:
         - wrench_model
         - friction_force
@@ -56,6 +59,8 @@ class StickSlipFriction(DifferentiableSystem):
     * `clusters` is a `drake_haptics._core.ClusterSet`.
     * `contact_wrench` is their `drake_haptics._core.PenaltyWrench`, whose forces are
       the normal forces.
+    * `contact_chain` is that of `ContactQuery`, with which the core finds clusters and
+      friction in one call, without the ports `clusters` and `contact_wrench`.
     * `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
       documents it. B is zero: the implicit step damps contacts that stick.
     * `friction_force` is the `drake_haptics._core.FrictionStep` with the force on the
@@ -76,6 +81,8 @@ class StickSlipFriction(DifferentiableSystem):
     z has a kink, that length does not change.
     """
 
+    undifferentiated = frozenset({"V_WT", "contact_chain"})
+
     def __init__(
         self,
         objects: Sequence[ContactObject],
@@ -85,6 +92,7 @@ class StickSlipFriction(DifferentiableSystem):
         break_away_m: float,
         static_ratio: float = 1.2,
         reach_m: float = 5e-3,
+        enable_chain: bool = False,
     ):
         """Constructs the system.
 
@@ -93,19 +101,20 @@ class StickSlipFriction(DifferentiableSystem):
             period_s: The tick, s.
             coefficient: Sliding coefficient μ of each object; at 0 the object has no
                 friction.
-            break_away_m: Distance that a contact gives way before it slips, m.
+            break_away_m: Displacement of a contact before it slips, m.
             static_ratio: Ratio r of the static to the sliding coefficient.
-            reach_m: Change of a contact's place from one tick to the next at which it
-                keeps half of its friction, m.
+            reach_m: Displacement of a contact between ticks at which it keeps half of
+                its friction, m.
+            enable_chain: Whether there are the ports `V_WT` and `contact_chain`; the
+                objects must rest then.
 
         Raises:
             ValueError: The period, `break_away_m` or `reach_m` is not positive, a
-                coefficient is negative, there is not one for each object, or
-                `static_ratio` is below 1.
+                coefficient is negative, there is not one for each object,
+                `static_ratio` is below 1, or an object of a chain moves.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         self._model = StickSlipModel(
             list(coefficient),
             [item.X_WO is None for item in objects],
@@ -123,13 +132,22 @@ class StickSlipFriction(DifferentiableSystem):
             for item in objects
             if item.X_WO is None
         ]
+        calc_step = self._calc_step
+        if enable_chain:
+            if self._X_WO:
+                raise ValueError("enable_chain: the objects must rest")
+            self._V_WT = self.DeclareVectorInputPort("V_WT", 6)
+            self._chain = self.DeclareAbstractInputPort(
+                "contact_chain", Value[object]()
+            )
+            calc_step = self._calc_chained_step
         self.DeclareDiscreteState(self._model.state_size)
         from_all = {self.all_input_ports_ticket(), self.xd_ticket()}
         # Output and update of a tick share one result of the core.
         self._step = self.DeclareCacheEntry(
             description="step",
             value_producer=ValueProducer(
-                allocate=lambda: Value[object](), calc=self._calc_step
+                allocate=lambda: Value[object](), calc=calc_step
             ),
             prerequisites_of_calc=from_all,
         )
@@ -174,6 +192,16 @@ class StickSlipFriction(DifferentiableSystem):
                 self._contact_wrench.Eval(context),
                 self._X_WT.Eval(context),
                 np.concatenate(poses) if poses else _NOTHING_MOVES,
+            )
+        )
+
+    def _calc_chained_step(self, context: Context, step: AbstractValue) -> None:
+        step.set_value(
+            self._chain.Eval(context).find_friction(
+                self._model,
+                context.get_discrete_state_vector().value(),
+                self._X_WT.Eval(context),
+                self._V_WT.Eval(context),
             )
         )
 

@@ -1,1 +1,1 @@
-"""The systems of the device port, whatever is behind it."""
+"""Systems between the loop and a haptic device, real or simulated."""

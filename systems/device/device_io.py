@@ -1,4 +1,4 @@
-"""The exchange with a device that is not simulated, once per tick."""
+"""Exchanges data with a device that is not simulated, once per tick."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 
 class DeviceIo(Diagram):
-    """Reads a device's handle and writes the wrench that it is to show.
+    """Reads a device's handle and writes the wrench that it is to render.
 
     The handle is read in the updates of a tick, before any other system samples it, and
-    the wrench that follows from it is written as soon as the tick is computed: the loop
-    adds no delay of its own. Both talk to the same device, so two Contexts of this
-    system are not independent.
+    the resulting wrench is written as soon as the tick is computed, so that the loop
+    adds no delay. All Contexts of this system talk to the same device, so they are not
+    independent.
 
     .. pydrake_system::
 
@@ -55,15 +55,15 @@ class DeviceIo(Diagram):
 
     * `F_Ho_W_rendered` (6) is the wrench [τ; f] on the handle at its origin in the
       world, N·m and N.
-    * `handle_slopes` (72) is [K; B] of that wrench as `HandleModel` documents it; may
-      be left unconnected.
+    * `handle_slopes` (72) is [K; B] of that wrench as `HandleModel` documents it; it
+      need not be connected.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
     * `reading` (abstract) is the `DeviceReading` from which both come.
 
     The state is one discrete group (37), [X_WH; V_WH] and the numbers of the reading,
     replaced by an unrestricted update every period from 0 s on. It raises
-    FloatingPointError where a reading is not finite.
+    FloatingPointError if a reading is not finite.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class DeviceIo(Diagram):
     def start_contact_servo(
         self, stepper: ConstraintStepper, X_WT: RigidTransform
     ) -> ContactServo:
-        """Starts the backend's `start_contact_servo` with a tool at rest.
+        """Starts the backend's contact servo with a tool at rest.
 
         Args:
             stepper: Stepper with the servo's period, its objects posed.
@@ -137,8 +137,8 @@ class _Exchange(LeafSystem):
             if backend.uses_slopes
             else None
         )
-        # Drake copies the state twice a tick: numbers take a tenth of the time that a
-        # Python object takes, and Python writes and reads one group faster than two.
+        # Drake copies the state twice per tick. Numbers take a tenth of the time of a
+        # Python object, and one group takes less time than two.
         state = self.DeclareDiscreteState(self._to_state(first_reading))
         self._eval_state = self.DeclareStateOutputPort("state", state).Eval
         self.DeclareAbstractOutputPort(
@@ -183,7 +183,7 @@ class _Exchange(LeafSystem):
         )
 
     def _calc_slopes(self, context: Context) -> tuple[np.ndarray, ...]:
-        """Returns K_B and B_B, or nothing where they are not used or not connected."""
+        """Returns K_B and B_B, or nothing if they are not used or not connected."""
         if self._slopes is None or not self._slopes.HasValue(context):
             return ()
         return self._frame.change_slopes_back(self._slopes.Eval(context))

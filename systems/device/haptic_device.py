@@ -1,4 +1,4 @@
-"""The device port: wrench in, pose out, whatever is behind it."""
+"""A haptic device, real or simulated, that takes a wrench and gives a pose."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class HapticDevice(Diagram):
         - status
         - reading (if the backend has it)
 
-    * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show at the handle's origin, in the
-      world, N·m and N.
+    * `F_Ho_W_commanded` (6) is the wrench [τ; f] to render on the handle at its origin
+      in the world, N·m and N.
     * `handle_slopes` (72) is that of `DeviceIo`.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
@@ -107,10 +107,10 @@ class HapticDevice(Diagram):
 
     @property
     def start_contact_servo(self) -> _StartServo | None:
-        """Function that starts a `DeviceIo`'s contact thread; None for others."""
+        """Function that starts the contact servo of a `DeviceIo`; None for others."""
         return self._start_contact_servo
 
     @property
     def wants_slopes(self) -> bool:
-        """Tells whether the backend can use `handle_slopes`."""
+        """Whether the backend can use `handle_slopes`."""
         return self._wants_slopes

@@ -1,4 +1,4 @@
-"""The last gate before a device: samples, limits and holds a wrench."""
+"""Samples, limits and holds the wrench on a device."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class RenderedForceHold(Diagram):
         - status
 
     `F_Ho_W_commanded` and `F_Ho_W_rendered` are wrenches [τ; f], N·m and N. `status`
-    (1) tells of the last sample: 0 shown as asked, 1 at a limit, 2 not finite.
+    (1) describes the last sample: 0 rendered as commanded, 1 limited, 2 not finite.
 
     The state is one discrete group (7), [F_Ho_W_rendered; status], updated every period
     from 0 s on; it depends on nothing before the sample.
@@ -103,7 +103,7 @@ class _LimitedSample(DifferentiableSystem):
         return at.state
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
-        """Returns what is shown with its derivatives; the status has none."""
+        """Returns the rendered wrench with its derivatives; the status has none."""
         asked = at["F_Ho_W_commanded"]
         gradient = np.zeros((7, at.num_derivatives))
         if np.isfinite(asked.value).all():

@@ -1,4 +1,4 @@
-"""A device backend that moves its handle as in a log."""
+"""A device backend that replays the motion of a recorded handle."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ReplayedHandle(Diagram):
         - X_WH
         - V_WH
 
-    * `F_Ho_W_rendered` (6) is not used: a recorded hand does not yield.
+    * `F_Ho_W_rendered` (6) is ignored: a recorded hand does not yield.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
 
@@ -44,8 +44,8 @@ class ReplayedHandle(Diagram):
             period_s: The tick, s.
 
         Raises:
-            ValueError: There is no tick, the two differ in length, or the period is
-                not positive.
+            ValueError: There are no ticks, the arrays differ in length, or the period
+                is not positive.
         """
         super().__init__()
         check_positive(period_s=period_s)
@@ -75,6 +75,6 @@ class _RecordedMotion(LeafSystem):
         )
 
     def _calc_handle_state(self, context: Context, output: BasicVector) -> None:
-        # Between ticks the last one holds. At a tick itself round-off must not count.
+        # Between ticks the last one holds; round-off at a tick must not matter.
         tick = int(context.get_time() / self._period_s + 1e-6)
         output.SetFromVector(self._states[min(tick, len(self._states) - 1)])

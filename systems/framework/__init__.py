@@ -1,1 +1,1 @@
-"""Building blocks of systems: derivatives, and ports for parts of vectors."""
+"""Base class of systems with derivatives, and ports for parts of vectors."""

@@ -1,4 +1,4 @@
-"""Base of systems with AutoDiff twins, and ports for parts of a vector."""
+"""Base class of systems with AutoDiff twins, and ports for parts of a vector."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics._core import AutoDiffVector, make_witness_override
 
-# Override for systems without witness functions. After each unrestricted update Drake
-# asks every Python system for them, and a missing override takes longer than a call.
+# After each unrestricted update Drake asks every Python system for its witness
+# functions. Calling this override takes less time than finding none.
 get_no_witness_functions = make_witness_override()
 
 
@@ -44,7 +44,7 @@ class AutoDiffPoint:
     them have zeros.
 
     Attributes:
-        state: The discrete state, all groups one after another.
+        state: The discrete state, all groups concatenated.
         time_s: The time (1,), s.
         parameters: The abstract parameters.
     """
@@ -91,7 +91,7 @@ class AutoDiffPoint:
         self.time_s: AutoDiffVector = self._inputs.pop("\0time")
 
     def __contains__(self, port: str) -> bool:
-        """Tells whether an input is connected or fixed."""
+        """Returns whether an input is connected or fixed."""
         return port in self._inputs
 
     def __getitem__(self, port: str) -> Any:
@@ -150,18 +150,18 @@ class DifferentiableSystem(_Convertible):
     """A LeafSystem of doubles that Drake can convert to AutoDiffXd.
 
     The twin has the same ports, discrete state, abstract parameters and periodic
-    update, and asks this system for values and derivatives. So the system itself
-    stays one fast call of the core per tick. Events that publish are left out: the
-    twin draws and prints nothing.
+    update, and asks this system for values and derivatives, so that the system itself
+    remains one fast call of the core per tick. The twin has no publish events: it draws
+    and prints nothing.
 
     A system defines `differentiate` if it has outputs, and `differentiate_update` if it
-    has state. A conversion refuses all else that a system can have: other state,
-    numeric parameters, discrete state without one periodic update.
+    has state. Systems with other state, with numeric parameters, or with discrete state
+    without one periodic update do not convert.
 
     Attributes:
         undifferentiated: Names of inputs that the twin does not read, and of outputs
-            that have no value there. Through them systems of doubles hand over data
-            that makes a tick faster and is available at other ports too.
+            that have no value there. They carry data between systems of doubles that
+            makes a tick faster and is available at other ports too.
     """
 
     undifferentiated: frozenset[str] = frozenset()
@@ -178,8 +178,8 @@ class DifferentiableSystem(_Convertible):
 
         Returns:
             An `AutoDiffVector`; for an abstract output, a value that carries
-            derivatives: it has `num_derivatives`, and `with_variables` where that can
-            be zero.
+            derivatives: it has `num_derivatives`, and `with_variables` if that can be
+            zero.
         """
 
     @abstractmethod
@@ -188,11 +188,10 @@ class DifferentiableSystem(_Convertible):
 
 
 def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -> None:
-    """Declares in a twin all that a system has.
+    """Declares the ports, state, parameters and update of a system in its twin.
 
     Raises:
-        ValueError: The system says that it has no derivatives, or has something that a
-            twin cannot have.
+        ValueError: The system has no derivatives, or something that a twin cannot have.
         TypeError: The system lacks a method that a twin would call.
     """
     if hasattr(system, "no_derivatives"):
@@ -325,7 +324,7 @@ def _find_num_derivatives(
     vectors: dict[str, np.ndarray],
     values: dict[str, Any],
 ) -> int:
-    """Returns the number D of variables, 0 where nothing has derivatives."""
+    """Returns the number D of variables, 0 if nothing has derivatives."""
     sizes = {
         entry.derivatives().size for vector in vectors.values() for entry in vector
     }
@@ -364,14 +363,14 @@ def export_parts(
 ) -> None:
     """Exports consecutive parts of a vector output as outputs of the diagram.
 
-    Drake's own system splits it, which takes little time compared with a port that
+    A system of Drake splits it, which takes little time compared with a port that
     Python calculates.
 
     Args:
         builder: Builder of the diagram.
         vector: Output port of a system in the diagram.
-        sizes: Size of each part by the name of its port, in order. What follows the
-            last one is not exported.
+        sizes: Size of each part by the name of its port, in order. The rest of the
+            vector is not exported.
     """
     rest = vector.size() - sum(sizes.values())
     all_sizes = [*sizes.values(), *([rest] if rest else [])]
@@ -389,15 +388,15 @@ def import_parts(
 ) -> None:
     """Exports consecutive parts of a vector input as inputs of the diagram.
 
-    Drake's own system joins them: one more port that Python reads takes longer, at
-    every tick.
+    A system of Drake joins them, which takes less time per tick than another port that
+    Python reads.
 
     Args:
         builder: Builder of the diagram.
-        vector: Output port of a system in the diagram.
+        vector: Input port of a system in the diagram.
         sizes: Size of each part by the name of its port, in order.
-        own: Output port of a system in the diagram that feeds the last part, which is
-            no input then.
+        own: Output port of a system in the diagram that feeds the last part, which then
+            is not an input of the diagram.
     """
     all_sizes = [*sizes.values(), *([] if own is None else [own.size()])]
     joint = builder.AddNamedSystem("joint", Multiplexer(all_sizes))

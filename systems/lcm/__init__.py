@@ -1,1 +1,1 @@
-"""Systems that turn LCM messages into vectors, and back."""
+"""Systems that convert LCM messages to vectors and back."""

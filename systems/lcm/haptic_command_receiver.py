@@ -1,4 +1,4 @@
-"""The gate of a haptic device that is commanded over LCM."""
+"""Receives LCM commands to a haptic device, and checks them by its gate."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics import _core
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.device.gate import GateStatus
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
@@ -24,7 +25,7 @@ _UINT32 = (1 << 32) - 1
 
 @dataclass(frozen=True, eq=False)
 class _Memory:
-    """The state: the gate, what it has decided, and the message it has seen last."""
+    """The state: the gate, its last decision, and the last message."""
 
     gate: _core.DeviceGate
     status: GateStatus
@@ -36,11 +37,11 @@ class _Memory:
 
 
 class HapticCommandReceiver(LeafSystem):
-    """Lets the wrench of an `lcmt_haptic_command` pass to a device, if it may.
+    """Passes the wrench of an `lcmt_haptic_command` to a device through a gate.
 
-    The message comes from Drake's `LcmSubscriberSystem`. The gate is the one of every
-    device (gate.h): force ramps in, is never over the limits, and ramps out when
-    messages stop, are damaged, or the handle is too fast.
+    The message comes from Drake's `LcmSubscriberSystem`. Every device has the same gate
+    (gate.h): force ramps up, never exceeds the limits, and ramps down when messages
+    stop or are damaged, or when the handle is too fast.
 
     .. pydrake_system::
 
@@ -58,8 +59,8 @@ class HapticCommandReceiver(LeafSystem):
     * `F_Ho_B` (6) is the wrench [τ; f] to show on the handle at Ho, N·m and N.
     * `gate_status` (abstract) is the `GateStatus`.
 
-    The state is the gate, moved on every period from 0 s on by an unrestricted update;
-    the outputs depend on it alone. Its clock is the context's time.
+    The state is the gate, which an unrestricted update advances every period from 0 s
+    on; the outputs depend on it alone. Its clock is the time of the Context.
     """
 
     def __init__(
@@ -82,8 +83,7 @@ class HapticCommandReceiver(LeafSystem):
             ValueError: A time or a limit is out of range.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         gate = _core.DeviceGate(
             max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=max_ttl_s
         )
@@ -113,9 +113,9 @@ class HapticCommandReceiver(LeafSystem):
         value = state.get_mutable_abstract_state(int(self._memory))
         memory = value.get_value()
         gate, command = memory.gate, self._command.Eval(context)
-        # The subscriber shows a message until the next one comes, and at first an empty
-        # one. A message whose session has more bits than a gate knows is not passed on
-        # either.
+        # The subscriber keeps a message until the next one, and begins with an empty
+        # one, which is skipped. So is a session number that does not fit into a gate's
+        # 32 bits.
         if command is not memory.seen and 0 < command.session <= _UINT32:
             gate.receive(now_ns, _pack(command))
         F_Ho_B = gate.step(now_ns, self._X_BH.Eval(context), self._V_BH.Eval(context))
@@ -137,7 +137,7 @@ class HapticCommandReceiver(LeafSystem):
         output.set_value(self._get_status(context))
 
     def _get_status(self, context: Context) -> GateStatus:
-        """Returns what the gate has decided last."""
+        """Returns the last decision of the gate."""
         return context.get_abstract_state(int(self._memory)).get_value().status
 
 

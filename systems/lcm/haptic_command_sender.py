@@ -1,4 +1,4 @@
-"""Turns vectors into LCM commands to a haptic device."""
+"""Sends LCM commands to a haptic device."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
 
 _LONGEST_TTL_S = 10.0
-# Enough messages at any rate of a haptic loop for one to get through.
+# Long enough for one message to get through at any rate of a haptic loop.
 _RELEASED_UNTIL_S = 0.05
 
 
@@ -31,15 +32,15 @@ class HapticCommandSender(LeafSystem):
 
     * `F_Ho_B` (6) is the wrench [τ; f] to show on the handle at Ho in the device's
       base, N·m and N.
-    * `enable` (1) asks for force where above one half; always where not connected. A
-      device leaves a fault when it is asked for no force, and then for force again.
+    * `enable` (1) enables force above one half; if it is not connected, force is always
+      enabled. A device recovers from a fault when force is disabled and enabled again.
 
-    A device takes force only from a host that has asked it for no force before, so all
-    messages before 0.05 s do that.
+    A device accepts force only from a host that has sent a disabled command before, so
+    all messages before 0.05 s are disabled.
 
-    The message's number is that of the period that the context's time is in, so it
-    must be published once per period. One such system serves one run: the numbers of
-    another that starts at 0 s would be old ones.
+    The sequence number is that of the period that contains the Context's time, so
+    publish once per period. Use a new system for each run: sequence numbers that start
+    again at 0 s would be old ones.
     """
 
     def __init__(self, period_s: float, *, ttl_s: float = 0.1):
@@ -53,8 +54,7 @@ class HapticCommandSender(LeafSystem):
             ValueError: A time is out of range.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         if not 0.0 < ttl_s <= _LONGEST_TTL_S:
             raise ValueError(f"ttl_s must be in (0, {_LONGEST_TTL_S:g}], is {ttl_s}")
         self._period_s = period_s

@@ -1,4 +1,4 @@
-"""Turns the LCM statuses of a haptic device into vectors."""
+"""Receives the LCM status of a haptic device."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ class HapticStatusReceiver(LeafSystem):
     * `gate` (1) and `fault` (1) are a `GateState` and a `Fault`.
 
     Before the first message the handle rests at the identity and the gate is idle. A
-    message with a number that is not finite, or no unit quaternion, raises ValueError:
-    a loop must not go on with it.
+    message with a number that is not finite, or whose quaternion is not of unit length,
+    raises ValueError, because a loop must not continue with it.
     """
 
     def __init__(self) -> None:

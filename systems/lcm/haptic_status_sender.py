@@ -1,4 +1,4 @@
-"""Turns vectors into LCM statuses of a haptic device."""
+"""Sends the LCM status of a haptic device."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.gate import GateStatus
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
 
@@ -31,11 +32,12 @@ class HapticStatusSender(LeafSystem):
     * `X_BH` (7) is the handle's pose [qw qx qy qz x y z] in the device's base, m.
     * `V_BH` (6) is its spatial velocity [ω; v] there, rad/s and m/s.
     * `gate_status` (abstract) is that of the device's `HapticCommandReceiver`.
-    * `buttons` (1) has bit i set while button i is held; none where not connected.
+    * `buttons` (1) has bit i set while button i is held; if it is not connected, there
+      are no buttons.
 
-    The message's number is that of the period that the context's time is in, so it
-    must be published once per period. One such system serves one run: the numbers of
-    another that starts at 0 s would be old ones.
+    The sequence number is that of the period that contains the Context's time, so
+    publish once per period. Use a new system for each run: sequence numbers that start
+    again at 0 s would be old ones.
     """
 
     def __init__(self, period_s: float):
@@ -48,8 +50,7 @@ class HapticStatusSender(LeafSystem):
             ValueError: The period is not positive.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         self._period_s = period_s
         self._boot = secrets.randbelow(2**32 - 1) + 1
         self._X_BH = self.DeclareVectorInputPort("X_BH", 7)

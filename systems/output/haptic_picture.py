@@ -1,4 +1,4 @@
-"""Draws the state of a haptic loop in Meshcat, in views that can be shown or hidden."""
+"""Draws a haptic loop in Meshcat, in views that can be shown or hidden."""
 
 from __future__ import annotations
 
@@ -22,18 +22,17 @@ from drake_haptics.systems.output.meshcat_shapes import (
 _ROOT = "/haptics"
 _MAX_CONTACTS = 64
 _MAX_CLUSTERS = 16
-# Objects are translucent, because much of the contact is inside of them.
+# Objects are translucent, because much of the contact is inside them.
 _ENVIRONMENT_ALPHA = 0.45
 # Lengths as shares of the tool's size (the diagonal of its box), so that tools of any
 # size give a readable picture.
 _CONTACT_ARROW = 0.06
-# Arrow of the device's largest force or torque: at most a third of the picture where
-# that shows all of the tool.
+# Length of the arrow of the device's largest force or torque.
 _LONGEST_ARROW = 1 / 3
 _SHORTEST_ARROW = 0.05
 _GRIP_RADIUS = 0.022
 _LINE_RADIUS = 0.006
-# Opacity of the tool while virtual facets are shown, which are inside of it.
+# Opacity of the tool while virtual facets are shown, which are inside it.
 _TOOL_SEEN_THROUGH = 0.35
 # Folders that a view shows or hides, below the root.
 _FOLDERS = {
@@ -66,14 +65,13 @@ SHOWN_AT_FIRST = frozenset({"ghost", "contacts", "forces"})
 
 
 class HapticPicture:
-    """The objects of the picture: made once, then moved, scaled, shown and hidden.
+    """The objects of the picture, made once, then moved, scaled, shown and hidden.
 
     All of them are below "/haptics" in the scene tree: `tool`, `handle`, `grip`,
     `coupling`, `force`, `torque`, `contacts`, `clusters`, `friction` and
     `objects/<name>`.
 
-    Most methods that draw return an iterator, so that a frame can be drawn a little at
-    a time.
+    Most methods that draw return an iterator, so that a frame can be drawn in slices.
     """
 
     def __init__(
@@ -99,7 +97,7 @@ class HapticPicture:
             has_friction: Whether there is friction to draw.
         """
         self._meshcat = meshcat
-        # A loop that was drawn here before may have left its friction.
+        # An earlier loop may have left its friction in this Meshcat.
         meshcat.Delete(f"{_ROOT}/friction")
         self._wanted = set(SHOWN_AT_FIRST)
         self._shown = SHOWN_AT_FIRST
@@ -127,7 +125,7 @@ class HapticPicture:
         meshcat.SetObject(
             f"{_ROOT}/coupling/line", Cylinder(_LINE_RADIUS * self._size_m, 1.0), line
         )
-        # Too short to be seen until handle and tool first move apart.
+        # Too short to be seen until handle and tool move apart.
         meshcat.SetProperty(f"{_ROOT}/coupling/line", "scale", [1.0, 1.0, _NO_LENGTH_M])
         self._max_force_N, self._max_torque_Nm = max_force_N, max_torque_Nm
         self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line], LONG_ARROW)
@@ -144,7 +142,7 @@ class HapticPicture:
         self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair, LONG_ARROW)
 
     def show(self, view: str, visible: bool) -> None:
-        """Requests that a view is shown or hidden, which `draw_views` then does.
+        """Requests that `draw_views` show or hide a view.
 
         Raises:
             ValueError: There is no such view.
@@ -164,7 +162,7 @@ class HapticPicture:
                 self._set_visible(f"{path}/virtual", False)
                 yield from pieces.send()
             self._pieces_are_sent = True
-        # Read only now: `show` may have been called while pieces were sent.
+        # Read here, because `show` may be called while pieces are sent.
         wanted = frozenset(self._wanted)
         changed = wanted ^ self._shown
         for view in sorted(changed & _FOLDERS.keys()):
@@ -215,14 +213,14 @@ class HapticPicture:
                 RotationMatrix.MakeFromOneVector(line, 2), p_WH + line / 2
             )
             self._meshcat.SetTransform(f"{_ROOT}/coupling", X_WLine, time_s)
-            # Below the pose, for the reason that ArrowPool gives.
+            # On a child of the node with the pose, for the reason in ArrowPool.
             path = f"{_ROOT}/coupling/line"
             self._meshcat.SetProperty(path, "scale", [1.0, 1.0, length], time_s)
 
     def draw_display_wrench(
         self, p_WH: np.ndarray, F_H_W: np.ndarray, time_s: float
     ) -> Iterator[None]:
-        """Draws the wrench that the hand feels at the handle.
+        """Draws the wrench on the hand at the handle.
 
         Args:
             p_WH: (3,) position of the handle, m: tip of the force, tail of the torque.
@@ -244,7 +242,7 @@ class HapticPicture:
         )
 
     def draw_contacts(self, contacts: ContactSet, time_s: float) -> Iterator[None]:
-        """Draws a small arrow for each contact, the deepest ones if there are too many.
+        """Draws a small arrow for each contact; only for the deepest if too many.
 
         The arrow points along the normal and ends at the contact's point, so that it is
         in the object, which is translucent, and not in the tool, which is opaque.
@@ -308,7 +306,7 @@ class HapticPicture:
         colors_of: Sequence[int] | np.ndarray,
         time_s: float,
     ) -> Iterator[None]:
-        """Draws forces as arrows; those too small to have a direction are left out."""
+        """Draws forces as arrows, except those too small to have a direction."""
         vectors = self._scale_arrows(f_W, self._max_force_N)
         felt = np.flatnonzero(vectors.any(axis=1))
         yield
@@ -323,7 +321,7 @@ class HapticPicture:
     def _scale_arrows(self, v_W: np.ndarray, largest: float) -> np.ndarray:
         """Returns arrows (n, 3), m, for vectors (n, 3); 0 without a direction."""
         size = np.linalg.norm(v_W, axis=1, keepdims=True)
-        # A device without motors for torques shows none.
+        # A device without motors for torques has a limit of zero.
         share = np.divide(size, largest, out=np.zeros_like(size), where=largest > 0.0)
         share = np.clip(_LONGEST_ARROW * share, _SHORTEST_ARROW, _LONGEST_ARROW)
         scale = np.divide(share, size, out=np.zeros_like(size), where=size > _NO_SIZE)

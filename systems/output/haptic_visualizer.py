@@ -25,10 +25,10 @@ from drake_haptics.systems.framework.differentiable_system import Differentiable
 from drake_haptics.systems.output.haptic_picture import HapticPicture
 
 _LONGEST_PERIOD_S = 1 / 30
-# A frame is drawn in slices of this length, one every other tick.
+# A frame is drawn in slices of this duration, one every other tick.
 _SLICE_S = 60e-6
 _SLICE_TICKS = 2
-# Drawing takes at most this share of clock time; the rest is the loop's.
+# Largest share of clock time for drawing.
 _LARGEST_SHARE = 0.05
 # Least clock time between two frames of a run that is faster than real time.
 _SHORTEST_FRAME_S = 1 / 50
@@ -69,12 +69,11 @@ class HapticVisualizer(DifferentiableSystem):
     `LoadShedding`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
-    is connected. So that drawing delays no tick, a frame is drawn in slices spread over
-    the ticks that follow; a slice ends with the message at which it has taken 60 µs.
-    Drawing takes at most one twentieth of clock time: after a frame that was slow to
-    draw, the next ones are left out. Where the loop sheds load, drawing stops at once.
-    A recording is complete, however long that takes. With scalar type AutoDiffXd it
-    draws nothing.
+    is connected. So that drawing delays no tick, a frame is drawn in slices over the
+    following ticks; a slice ends with the first message after 60 µs. Drawing takes at
+    most one twentieth of clock time: after a slow frame the next ones are skipped.
+    While the loop sheds load, nothing is drawn. A recording is complete, however long
+    that takes. With scalar type AutoDiffXd the system draws nothing.
     """
 
     def __init__(
@@ -100,13 +99,12 @@ class HapticVisualizer(DifferentiableSystem):
             tick_s: Period of the loop, s.
             max_force_N: The device's largest force, N.
             max_torque_Nm: The device's largest torque, N·m.
-            has_friction: Whether there is friction to draw, and a port for it.
-            enable_load_shedding: Whether the loop sheds load, and there is a port for
-                that.
+            has_friction: Whether there is friction to draw, which adds a port.
+            enable_load_shedding: Whether the loop sheds load, which adds a port.
         """
         super().__init__()
-        # A power of two of ticks is exact: a frame is never a round-off away from a
-        # tick, where it would cost the integrator a step of its own.
+        # A power of two of ticks is exact. A frame that is a round-off away from a tick
+        # would cost the integrator another step.
         ticks = 2.0 ** math.floor(math.log2(max(_LONGEST_PERIOD_S / tick_s, 1.0)))
         self._period_s = ticks * tick_s
         self._meshcat = meshcat
@@ -158,12 +156,11 @@ class HapticVisualizer(DifferentiableSystem):
     def Show(self, view: str, visible: bool) -> None:
         """Shows or hides a view from the next frame on.
 
-        The next frame sends geometry that has not been sent yet, in slices like the
-        rest.
+        The next frame also sends geometry that has not been sent yet.
 
         Args:
             view: One of `drake_haptics.systems.output.haptic_picture.PICTURE_VIEWS`.
-            visible: Whether the view is to be seen.
+            visible: Whether to show the view.
 
         Raises:
             ValueError: There is no such view.
@@ -174,7 +171,8 @@ class HapticVisualizer(DifferentiableSystem):
     def recorded_sizes(self) -> np.ndarray:
         """Times, forces and torques of a recording: (n, 3), s, N, N·m.
 
-        There is one row for two ticks; the frames are fewer and would miss peaks.
+        There is one row for every two ticks, because frames are fewer and would miss
+        peaks.
         """
         return np.array(self._recorded_sizes).reshape(-1, 3)
 
@@ -195,7 +193,7 @@ class HapticVisualizer(DifferentiableSystem):
         self._meshcat.PublishRecording()
 
     def _publish(self, context: Context) -> None:
-        """Draws a whole frame, if someone sees it and there is time."""
+        """Draws a whole frame, if a browser is connected and there is time."""
         if self._recording:
             self._record(context)
         elif self._frame is not None or self._begin(context):
@@ -216,14 +214,14 @@ class HapticVisualizer(DifferentiableSystem):
             self._go_on(_SLICE_S)
 
     def _must_save(self, context: Context) -> bool:
-        """Tells whether the loop has no time for drawing."""
+        """Returns whether the loop has no time for drawing."""
         return (
             self._load_shedding is not None
             and self._load_shedding.Eval(context)[0] > 0.0
         )
 
     def _is_due(self, time_s: float) -> bool:
-        """Tells whether a frame begins with this slice."""
+        """Returns whether a frame begins with this slice."""
         return round(time_s / self._slice_period_s) % self._slices == 0
 
     def _record(self, context: Context) -> None:
@@ -236,7 +234,7 @@ class HapticVisualizer(DifferentiableSystem):
             self._first_frame = False
 
     def _begin(self, context: Context) -> bool:
-        """Begins a frame, if someone sees it and there is time."""
+        """Begins a frame, if a browser is connected and there is time."""
         now_s = time.perf_counter()
         if now_s < self._not_before_s or not self._meshcat.GetNumActiveConnections():
             return False
@@ -246,7 +244,7 @@ class HapticVisualizer(DifferentiableSystem):
         return True
 
     def _go_on(self, slice_s: float) -> None:
-        """Continues a frame for a slice, which the last step may overrun."""
+        """Continues a frame for one slice, which the last step may overrun."""
         start_s = now_s = time.perf_counter()
         assert self._frame is not None
         for _ in self._frame:
@@ -287,7 +285,7 @@ class HapticVisualizer(DifferentiableSystem):
         wrench: PenaltyWrench,
         friction: FrictionStep | None,
     ) -> Iterator[None]:
-        """Sends a frame, a little at each step of the iteration."""
+        """Sends a frame, one part at each step of the iteration."""
         picture = self._picture
         yield from picture.draw_views()
         yield from picture.place_tool(X_WH, X_WT, time_s)

@@ -1,4 +1,4 @@
-"""Draws arrows and convex pieces in Meshcat, so that they can be moved and recorded."""
+"""Draws arrows and convex pieces in Meshcat that can be moved and recorded."""
 
 from __future__ import annotations
 
@@ -29,23 +29,21 @@ DOUBLE_ARROW: Profile = (
 )
 """An arrow with two heads, for torques."""
 
-# Facets per message: so few that a tick is not late, so many that a page can take some
-# hundred thousand of them.
+# Facets per message: few enough that no tick is late, and many enough that a page can
+# display some hundred thousand of them.
 _SHEET = 128
 
 
 class ArrowPool:
     """A fixed number of arrows, made once, then moved, scaled, shown and hidden.
 
-    A Meshcat recording holds poses and properties over time but no geometry, so an
-    arrow that is to come and go must exist from the start. The same calls draw the
-    live picture.
+    A Meshcat recording holds poses and properties over time but no geometry, so every
+    arrow must exist from the start.
 
     A slot is placed, and the folder `arrow` in it is scaled: a pose that the page
     receives resets the scale of the same node. The folder has one arrow per color, of
-    which at most one is visible. Whatever is drawn under the same key stays in the same
-    slot, so that a recording, which is interpolated between frames, does not sweep
-    arrows across the scene.
+    which at most one is visible. A key stays in the same slot, so that a recording,
+    which interpolates between frames, does not sweep arrows across the scene.
     """
 
     def __init__(
@@ -61,7 +59,7 @@ class ArrowPool:
         Args:
             meshcat: Meshcat to draw in.
             path: Folder of the arrows in the scene tree.
-            capacity: Number of arrows that can be seen at once.
+            capacity: Number of arrows that can be visible at once.
             colors: Colors that an arrow can have.
             profile: Outline of an arrow of length 1.
         """
@@ -87,12 +85,12 @@ class ArrowPool:
         colors: Sequence[int] | np.ndarray,
         time_s: float,
     ) -> Iterator[None]:
-        """Shows these arrows and no others; the first ones if there are too many.
+        """Shows only these arrows, or the first ones if there are too many.
 
         Each step of the iteration sends one message to the page.
 
         Args:
-            keys: (n,) keys of the things that the arrows stand for, all different.
+            keys: (n,) distinct keys of what the arrows represent.
             p_WTip: (n, 3) tips, m.
             vectors_W: (n, 3) vectors from tail to tip, m, none of them zero.
             colors: (n,) indices into the pool's colors.
@@ -130,7 +128,7 @@ class ArrowPool:
                 )
 
     def _assign_slots(self, keys: Sequence[Hashable]) -> None:
-        """Keeps the slots of keys seen before, gives new keys free ones."""
+        """Keeps the slots of known keys, and gives free ones to new keys."""
         kept = {k: self._slot_of_key[k] for k in keys if k in self._slot_of_key}
         free = iter(sorted(set(range(len(self._slots))) - set(kept.values())))
         self._slot_of_key = {k: kept[k] if k in kept else next(free) for k in keys}
@@ -163,10 +161,10 @@ def _make_arrow(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
 
 
 class DrawnPieces:
-    """Facets of pieces below a path: `pieces`, on the mesh, and `virtual`.
+    """Facets of pieces in two folders: `pieces`, on the mesh, and `virtual`.
 
-    Each folder holds sheets of a few facets. They stay where they were sent, so that
-    to show or hide a folder later is one property.
+    Facets are sent in sheets and stay in Meshcat, so that one property shows or hides a
+    folder.
     """
 
     def __init__(

@@ -25,7 +25,7 @@ from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 
 class TickLogSink(Diagram):
-    """Hands the signals that the updates of a tick see to a `TickRecorder`.
+    """Passes the signals that the updates of a tick see to a `TickRecorder`.
 
     .. pydrake_system::
 
@@ -46,11 +46,11 @@ class TickLogSink(Diagram):
     `ContactQuery` and `ContactClustering`, and the wrench that is commanded to the
     device. `reading` is the `DeviceReading` of a device that is not simulated.
 
-    It notes them in a periodic discrete update, from 0 s on, though it has no state:
-    only there do they have the values that the other updates of the tick sample. A
-    publish event or a monitor comes before a device is read, or after the tool has
-    moved on. Two Contexts of this system write to the same log, and a diagram with it
-    does not convert to AutoDiffXd.
+    It records them in a periodic discrete update from 0 s on, although it has no state,
+    because only there do they have the values that the other updates of the tick
+    sample. A publish event or a monitor runs before the device is read or after the
+    tool has moved. Two Contexts of this system write to the same log, and a diagram
+    with it does not convert to AutoDiffXd.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class TickLogSink(Diagram):
         super().__init__()
         check_positive(period_s=period_s)
         builder = DiagramBuilder()
-        # Drake joins the vectors, which takes less time than one port in Python.
+        # Drake joins the vectors, which takes less time than several ports in Python.
         signals = builder.AddNamedSystem(
             "signals", Multiplexer([*(len(REALS[name]) for name in SIGNALS), 1])
         )

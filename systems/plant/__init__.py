@@ -1,1 +1,1 @@
-"""The systems between haptic rendering and the bodies of a plant."""
+"""Systems between haptic rendering and the bodies of a plant."""

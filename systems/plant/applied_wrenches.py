@@ -1,4 +1,4 @@
-"""Wrenches on tool and objects as forces on the bodies of a plant."""
+"""Converts wrenches on tool and objects to forces on the bodies of a plant."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from drake_haptics.systems.framework.differentiable_system import (
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
 def AppliedWrenches_(T: type) -> type:
     """Defines `AppliedWrenches` for one scalar type."""
-    # Looked up once: the lookup takes longer than all the rest.
+    # Looked up once, because the lookup takes longer than all the rest.
     AppliedForce, SpatialForce = ExternallyAppliedSpatialForce_[T], SpatialForce_[T]
-    # Not left to the default, which is not a number for AutoDiffXd.
+    # The default is NaN for AutoDiffXd.
     p_BoBo_B = np.array([T(0.0)] * 3)
 
     def make_force(body: BodyIndex) -> Any:
-        """Returns a force on a body at its origin, without a wrench yet."""
+        """Returns a force on a body at its origin, whose wrench is not yet set."""
         force = AppliedForce()
         force.body_index = body
         force.p_BoBq_B = p_BoBo_B
         return force
 
     def add_up(evals: Sequence[Any], context: Any, first: Sequence[Any] = ()) -> Any:
-        """Returns the sum of vectors; `sum` begins with 0, a slow sum in itself."""
+        """Returns the sum of vectors; `sum` is slower, because it begins with 0."""
         return reduce(add, [*first, *(evaluate(context) for evaluate in evals)])
 
     class Impl(LeafSystem_[T]):

@@ -1,4 +1,4 @@
-"""Tool and objects as bodies of a plant: how they move."""
+"""Reads the motion of tool and objects from the ports of a plant."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from drake_haptics.systems.framework.differentiable_system import (
 
 
 class BodyMotions(Diagram):
-    """Poses and velocities of tool and objects, out of those of all bodies of a plant.
+    """Selects the poses and velocities of tool and objects from those of all bodies.
 
     .. pydrake_system::
 
@@ -47,7 +47,7 @@ class BodyMotions(Diagram):
       frame's origin in the world, rad/s and m/s.
 
     It has no state, and converts to AutoDiffXd. With a largest step it has a periodic
-    publish event without a handler, at which every step of an integrator ends.
+    publish event that does nothing, at which every step of an integrator ends.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class BodyMotions(Diagram):
             tool: Body that is the tool.
             objects: Bodies of the objects that move, by the names of the objects.
             largest_step_s: Longest step that an integrator may take, s; None for a
-                discrete plant, which has steps of its own.
+                discrete plant.
         """
         super().__init__()
         builder = DiagramBuilder()
@@ -81,7 +81,7 @@ class BodyMotions(Diagram):
 @TemplateSystem.define("_BodyMotionsVector_", T_list=(float, AutoDiffXd))
 def _BodyMotionsVector_(T: type) -> type:
     class Impl(LeafSystem_[T]):
-        """All outputs of a `BodyMotions`, one after another."""
+        """All outputs of a `BodyMotions`, concatenated."""
 
         DoGetWitnessFunctions = get_no_witness_functions
 

@@ -1,4 +1,4 @@
-"""A body of a plant beside the proxy that contact stops in its place."""
+"""Connects a body of a plant with the proxy that contact stops in its place."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 
 
 class BodyOfProxy(LeafSystem):
-    """Tells a proxy where its body goes, and the body what acts on its proxy.
+    """Predicts the body's pose for its proxy, and applies the proxy's wrenches to it.
 
     .. pydrake_system::
 
@@ -33,10 +33,10 @@ class BodyOfProxy(LeafSystem):
       world, N·m and N; `handle` (78) is a wrench model that begins with another wrench
       on the proxy; it counts as zero if it is not connected.
     * `X_WT_next` (7) is the body's pose after a step without forces. A proxy that is
-      drawn there does not lag behind a body that coasts.
+      pulled there does not lag behind a body that coasts.
     * `F_To_W` (6) is the sum of both wrenches at the body's origin: wrenches on a proxy
-      without mass act on its body, at the same place, so that neither momentum nor
-      angular momentum is lost, and a body that touches nothing feels nothing.
+      without mass act on its body at the same point, so that momentum and angular
+      momentum are conserved, and a body that touches nothing feels nothing.
 
     It has no state.
     """

@@ -1,1 +1,1 @@
-"""The systems of the tool, and of the coupling that ties it to the handle."""
+"""Systems of the tool and of the coupling between handle and tool."""

@@ -1,4 +1,4 @@
-"""The step of the constraint law as one LeafSystem: state, outputs and derivatives."""
+"""The constraint law's step as a LeafSystem: state, outputs and derivatives."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class ConstraintWrench:
 
     @property
     def f_cluster_W(self) -> np.ndarray:
-        """(n, 3) force of each contact on the tool, N: each is a cluster by itself."""
+        """(n, 3) force of each contact on the tool, N; each contact is a cluster."""
         return self.lambda_N[:, None] * self.contacts.nhat_BA_W
 
     def __deepcopy__(self, memo: object) -> ConstraintWrench:
@@ -67,7 +67,7 @@ class ConstraintWrench:
 
 
 class _ConstraintStep(DifferentiableSystem):
-    """The state of a `ConstraintToolStep`, and all of its outputs from one step."""
+    """The state of a `ConstraintToolStep`, and all its outputs from one step."""
 
     undifferentiated = frozenset({"contacts", "contact_wrench", "wrench_model"})
 
@@ -105,7 +105,7 @@ class _ConstraintStep(DifferentiableSystem):
         self._objects = tuple(objects)
         self._q_HT = pose_to_vector(X_HT)
         self._step_s = step_s
-        # Wrong arguments are refused here, and not at the first tick.
+        # Invalid arguments fail here, not at the first tick.
         stepper = make_stepper(gains)
         self._num_anchors = stepper.num_anchors
         self._gains = self.DeclareAbstractParameter(Value[object](gains))
@@ -190,16 +190,16 @@ class _ConstraintStep(DifferentiableSystem):
             )
         if start_servo is not None:
             self._servo = start_servo(stepper)
-            # As `DeviceIo` does: read before all updates, and say at the end of a tick
-            # that the loop goes on.
+            # As in `DeviceIo`, the state is read before all updates, and the end of a
+            # tick tells the servo that the loop still runs.
             self.DeclarePeriodicUnrestrictedUpdateEvent(tick_s, 0.0, self._follow)
             self.DeclarePeriodicPublishEvent(tick_s, 0.0, self._renew)
             return
         if plant is not None:
             self.DeclareInitializationDiscreteUpdateEvent(self._start)
         if plant is not None and plant.has_sampled_output_ports():
-            # Unrestricted as the plant's own update: a discrete one would come after
-            # it.
+            # Unrestricted like the plant's update, after which a discrete one would
+            # run.
             self.DeclarePeriodicUnrestrictedUpdateEvent(
                 self._step_s,
                 0.0,

@@ -1,4 +1,4 @@
-"""The tool as a rigid body whose step keeps it a skin apart from all it meets."""
+"""Steps the tool as a rigid body that constraints keep apart from objects."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from drake_haptics._core import (
     RigidToolDynamics,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import export_parts
 from drake_haptics.systems.tool.constraint_step import _ConstraintStep
 
 
 class ConstraintToolStep(Diagram):
-    """A free rigid body that is drawn to the handle and kept apart from objects.
+    """A free rigid body that is pulled to the handle and kept apart from objects.
 
     Under the constraint law it replaces `ContactQuery`, `ContactClustering`,
     `PenaltyForce`, `VirtualCoupling` and `HapticTool` together. Each pair of convex
@@ -31,9 +32,9 @@ class ConstraintToolStep(Diagram):
     the step, to first order in the tool's motion, must not be less than the skin. The
     motion is the one that minimizes the energy of inertia, coupling and applied
     wrenches under all rows (core/constraint/constraint_step.h). A fast tick is divided
-    until no motion is longer than the distance that the rows see, so that the tool
-    passes through nothing, however thin or soft. A tool that begins in overlap is led
-    out slowly.
+    until no motion is longer than the distance up to which rows are found, so that the
+    tool passes through nothing, however thin or soft. A tool that begins in overlap is
+    moved out slowly.
 
     .. pydrake_system::
 
@@ -78,21 +79,20 @@ class ConstraintToolStep(Diagram):
     * `friction_force` is the `drake_haptics._core.FrictionStep` of `contacts`, and
       `friction_model` (78) its [F; K; B] on the tool, as in `StickSlipFriction`.
 
-    Friction takes part in the same step: where the tool sticks it is tied to an anchor,
-    and it slides where the normal forces of the same tick do not hold it
+    Friction takes part in the same step: where the tool sticks it is held at an anchor,
+    and it slides where the normal forces of the same tick cannot hold it
     (core/constraint/row_friction.h).
 
     The state is a discrete group (13), [X_WT; V_WT], and with friction a second one (8
     for each object), the anchors, both updated every period from 0 s on, or read from a
     servo that steps the tool. At the end of each tick the system tells that servo that
-    the loop goes on. A Context remembers the search of the last tick, which never
+    the loop still runs. A Context remembers the search of the last tick, which never
     changes a result by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see `set_gains`.
     Outputs have no derivatives with respect to them, and none at all with friction.
-    Under AutoDiffXd the features that face each other stay the same, a row that just
-    begins to push does push, and `contacts`, `contact_wrench` and `wrench_model` have
-    no value.
+    Under AutoDiffXd the features stay the same, a row that just begins to push counts
+    as pushing, and `contacts`, `contact_wrench` and `wrench_model` have no value.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class ConstraintToolStep(Diagram):
                 update does. Defaults to none.
             coefficient: Friction coefficient μ for each object. Defaults to no
                 friction.
-            break_away_m: Distance that the tool gives way before it slides, m.
+            break_away_m: Displacement of the tool before it slides, m.
             servo_period_s: Period at which the tool is stepped, s. If it is shorter
                 than the tick, only tool and handle move between ticks. Defaults to the
                 tick.
@@ -145,8 +145,7 @@ class ConstraintToolStep(Diagram):
                 that moves.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         if not objects:
             raise ValueError("objects must not be empty")
         if len({item.name for item in objects}) < len(objects):

@@ -1,4 +1,4 @@
-"""Models how the wrench on the handle changes with the handle's motion."""
+"""Models how the wrench on the handle changes as the handle moves."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class HandleModel(LeafSystem):
     """Stiffness and damping that a handle feels, for a servo between two ticks.
 
     The tool is taken to be light and at rest: coupling and contact are springs in
-    series. Free in space the handle feels no stiffness; at a wall it feels that of both
-    springs, along the normal alone, however stiff the coupling is in all other
+    series. In free space the handle feels no stiffness; at a wall it feels that of both
+    springs, but only along the normal, however stiff the coupling is in other
     directions.
 
     .. pydrake_system::

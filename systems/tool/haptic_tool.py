@@ -1,4 +1,4 @@
-"""The tool as a rigid body with an implicit step."""
+"""Steps the tool as a rigid body, implicitly."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import AutoDiffVector, RigidToolDynamics
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -80,8 +81,7 @@ class HapticTool(Diagram):
             ValueError: The period is not positive.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         self._dynamics = dynamics
         self._period_s = period_s
         builder = DiagramBuilder()
@@ -169,7 +169,7 @@ class _ImplicitStep(DifferentiableSystem):
         try:
             return [eval_wrench(context) for eval_wrench in self._eval_read]
         except RuntimeError:
-            # Asking first would take as long as reading, at every tick.
+            # Asking first would take as long as reading.
             return [port.Eval(context) for port in self._read if port.HasValue(context)]
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:

@@ -1,4 +1,4 @@
-"""Keeps the haptic loop from giving the device energy that it did not get."""
+"""Keeps the haptic loop from giving the device more energy than it received."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ _AT_ORIGIN = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 class PassivityControl(Diagram):
     """Passivity observer and controller at the device's port, in the time domain.
 
-    The observer keeps the balance of the energy that the virtual world has received
-    from the device. The wrench on a device is held between ticks, so its work is
-    exactly force times displacement and, about a fixed axis, torque times angle (Ryu,
-    Kim and Hannaford 2004); no velocity is needed. Where the balance is below zero, the
-    world has given out more than it got, and the controller adds the damping that
-    dissipates the excess within a tick at the measured twist, up to a limit (Hannaford
-    and Ryu 2002; in six axes Preusche et al. 2003). The rest of the excess is carried
-    over. The controller never adds power to the handle, and where the balance is not
-    negative `F_Ho_W_commanded` is `F_Ho_W_desired` bit for bit.
+    The observer accounts for the energy that the virtual world has received from the
+    device. The wrench on a device is held between ticks, so its work is exactly force
+    times displacement and, about a fixed axis, torque times angle (Ryu, Kim and
+    Hannaford 2004); no velocity is needed. If the balance is negative, the world has
+    returned more than it received, and the controller adds the damping that dissipates
+    the excess within a tick at the measured twist, up to a limit (Hannaford and Ryu
+    2002; in six axes Preusche et al. 2003). The rest of the excess is carried over. The
+    controller never adds power to the handle, and while the balance is not negative,
+    `F_Ho_W_commanded` is `F_Ho_W_desired` bit for bit.
 
-    A long contact that dissipates would raise the balance without end, and the
-    controller would act too late. Therefore the balance is kept at `reserve_J` at most,
-    to be chosen as the largest energy that the world can honestly give back
+    A long contact that dissipates would raise the balance without bound, and the
+    controller would act too late. Therefore the balance is limited to `reserve_J`.
+    Choose it as the largest energy that the world can store and give back
     (`drake_haptics.bounds.sampled_spring.calc_returnable_energy`).
 
     .. pydrake_system::
@@ -53,7 +53,7 @@ class PassivityControl(Diagram):
 
     Wrenches are [τ; f] on the handle at its origin in the world, N·m and N.
 
-    * `F_Ho_W_desired` is the wrench that the coupling would show.
+    * `F_Ho_W_desired` is the wrench of the coupling.
     * `F_Ho_W_rendered` is the wrench that the `HapticDevice` has held, within its
       limits, since the last tick.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m, and `V_WH`
@@ -65,8 +65,8 @@ class PassivityControl(Diagram):
     The state is one discrete group (8), [balance; X_WH at the last tick], updated
     every period from 0 s on.
 
-    Derivatives are those of the branch taken: no damping, a share of it, or all of it;
-    the balance is below the reserve or kept at it.
+    Derivatives are those of the branch taken: whether the damping is zero, partial or
+    full, and whether the balance is below the reserve or at it.
     """
 
     def __init__(
@@ -113,8 +113,8 @@ class PassivityControl(Diagram):
     def begin(self, context: Context) -> None:
         """Begins with a balance of zero at the handle's present pose.
 
-        Use it for a controller that is added to a running loop, where a wrench may be
-        held already.
+        Use it for a controller that is added to a running loop, where a wrench may
+        already be held.
 
         Args:
             context: Context of this system.
@@ -132,7 +132,7 @@ class _ObservedPort(DifferentiableSystem):
         self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
-        # At the first tick no wrench has been held: any pose will do.
+        # At the first tick no wrench has been held, so that any pose will do.
         self.DeclareDiscreteState(np.array([0.0, *_AT_ORIGIN]))
         # The wrench that is shown, and the next state.
         self._shown_and_state = self.DeclareVectorOutputPort(

@@ -1,4 +1,4 @@
-"""The weight of the tool."""
+"""Applies gravity to the tool."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import AutoDiffVector, tool_weight
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -33,9 +34,9 @@ class ToolGravity(DifferentiableSystem):
     `X_WT` (7) is the tool's pose [qw qx qy qz x y z] in the world, m.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
-    documents it. K and B are zero. The torque does change with the rotation, but its
-    derivative is positive semidefinite only where the tool hangs below its origin, and
-    an indefinite K would make the tool's implicit step unsafe.
+    documents it. K and B are zero. The torque changes with the rotation, but its
+    derivative is positive semidefinite only if the tool hangs below its origin, and an
+    indefinite K would make the tool's implicit step unsafe.
     """
 
     def __init__(
@@ -57,8 +58,7 @@ class ToolGravity(DifferentiableSystem):
                 or a number is not finite.
         """
         super().__init__()
-        if not (mass_kg > 0.0 and np.isfinite(mass_kg)):
-            raise ValueError(f"mass_kg must be finite and positive, is {mass_kg}")
+        check_positive(mass_kg=mass_kg)
         self._p_TTcm = _check_vector("p_TTcm", p_TTcm)
         self._weight_W = mass_kg * _check_vector("gravity_m_per_s2", gravity_m_per_s2)
         self._X_WT = self.DeclareVectorInputPort("X_WT", 7)

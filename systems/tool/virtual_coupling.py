@@ -25,12 +25,12 @@ from drake_haptics.systems.framework.differentiable_system import (
 class VirtualCoupling(Diagram):
     """Six-axis spring and damper between handle and tool.
 
-    It draws the tool to X_WH X_HT, and the handle gets the reaction. The device thus
+    It pulls the tool to X_WH X_HT, and the handle gets the reaction. The device thus
     feels at most this stiffness, however stiff the contact is (Adams and Hannaford
     1999). It has no state and adds no delay.
 
-    It pulls with no more than the gains' `max_force_N` and `max_torque_Nm`, in a loop
-    those of the device: to stretch it further presses the tool no harder.
+    It pulls with at most the gains' `max_force_N` and `max_torque_Nm`, which in a loop
+    are those of the device: stretching it further presses the tool no harder.
 
     .. pydrake_system::
 
@@ -72,8 +72,8 @@ class VirtualCoupling(Diagram):
         self._X_HT = X_HT
         builder = DiagramBuilder()
         spring = builder.AddNamedSystem("spring", _SpringAndDamper(X_HT))
-        # Drake's own system has them as a parameter, and hands them on with the
-        # motions: to read a parameter in Python takes longer than the law.
+        # A system of Drake passes them on with the motions: reading a parameter in
+        # Python takes longer than the law.
         self._gains = builder.AddNamedSystem(
             "gains", ConstantVectorSource(gains_to_vector(gains))
         )
@@ -172,7 +172,7 @@ class _SpringAndDamper(DifferentiableSystem):
     def __init__(self, X_HT: RigidTransform):
         super().__init__()
         self._q_HT = pose_to_vector(X_HT)
-        # Bound once: looking a method up takes as long as adding vectors, at each tick.
+        # Bound once, because looking up a method takes as long as adding vectors.
         self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 32).Eval
         self.DeclareVectorOutputPort(
             "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}

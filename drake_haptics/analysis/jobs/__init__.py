@@ -1,1 +1,1 @@
-"""Computes a function for many tasks, on one machine or many."""
+"""Computes a function for many tasks, on one machine or on many."""

@@ -1,9 +1,8 @@
-"""Linear algebra of small matrices on one thread.
+"""Runs linear algebra of small matrices on one thread.
 
-A BLAS shares a product among as many threads as there are cores. Matrices of a loop's
-size are too small for that: the threads spend their time waiting for one another. It
-also sums the parts so that, from some hundred rows on, the last bits would depend on
-the cores of a machine.
+A BLAS splits a product among as many threads as there are cores. The matrices of a loop
+are too small for that: the threads mostly wait for each other. Beyond some hundred rows
+the last bits of a sum would also depend on the number of cores.
 """
 
 from __future__ import annotations
@@ -29,8 +28,8 @@ def one_blas_thread() -> threadpool_limits:
 def on_one_blas_thread(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Returns a function whose linear algebra runs on one thread.
 
-    It is a decorator. A call costs about a millisecond, and nothing from within another
-    such function.
+    It is a decorator. A call takes about a millisecond, and nothing within another
+    decorated function.
     """
 
     @wraps(function)

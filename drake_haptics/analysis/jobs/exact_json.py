@@ -1,4 +1,4 @@
-"""Python data as JSON text from which exactly the same comes back."""
+"""Converts Python data to JSON text and back, without any change."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ARRAY_KINDS = "biufcUSMm"
 
 
 def to_exact_json(value: Any) -> str:
-    """Returns one line of JSON (RFC 8259), the same for the same value.
+    """Returns one line of JSON (RFC 8259), which depends only on the value.
 
     Floats keep every bit, infinities and NaN included (a NaN's payload is lost);
     arrays keep type, shape and every bit; tuples stay tuples and dicts may have any
@@ -37,10 +37,10 @@ def to_exact_json(value: Any) -> str:
 
 
 def from_exact_json(text: str) -> Any:
-    """Returns the value that `to_exact_json` wrote as a text; arrays are new.
+    """Returns the value of a text that `to_exact_json` wrote; arrays are new.
 
     Raises:
-        ValueError: The text is not one of `to_exact_json`.
+        ValueError: The text was not written by `to_exact_json`.
     """
     try:
         return _decode(json.loads(text))
@@ -49,7 +49,7 @@ def from_exact_json(text: str) -> Any:
 
 
 def _encode(value: Any, where: str) -> Any:
-    """Returns what json.dumps takes; subclasses would come back as another type."""
+    """Returns a value for json.dumps; refuses subclasses, whose type would be lost."""
     kind = type(value)
     if value is None or kind in (bool, int, str):
         return value
@@ -105,5 +105,5 @@ def _decode(plain: Any) -> Any:
     if kind == _ARRAY:
         dtype, shape, text = data
         flat = np.frombuffer(base64.b64decode(text), dtype=np.dtype(dtype))
-        return flat.reshape(shape).copy()  # frombuffer's own is read-only
+        return flat.reshape(shape).copy()  # an array of frombuffer is read-only
     raise ValueError(f"not a text of to_exact_json: {kind!r} is unknown")

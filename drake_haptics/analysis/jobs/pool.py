@@ -1,4 +1,4 @@
-"""The processes of this machine that compute the tasks of a study by default."""
+"""Computes the tasks of a study in processes of this machine."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 
 from joblib.externals.loky import ProcessPoolExecutor, cpu_count
 
-# How often a worker looks whether the process that started it still runs, s.
+# Period at which a worker checks that its parent process still runs, s.
 _LOOK_PERIOD_S = 0.5
 
 
@@ -26,7 +26,7 @@ class SerialExecutor(Executor):
     ) -> Future[Any]:
         """Calls the function and returns a finished future.
 
-        KeyboardInterrupt goes through to the caller.
+        KeyboardInterrupt passes to the caller.
         """
         future: Future[Any] = Future()
         try:
@@ -38,19 +38,19 @@ class SerialExecutor(Executor):
 
 @contextmanager
 def local_processes(most_useful: int) -> Iterator[Executor]:
-    """Opens a pool of fresh processes, one for each core that this one may use.
+    """Opens a pool of new processes, one for each core that this process may use.
 
     The processes share no lock, thread or state of Drake with this process. They end
-    soon after this process dies in whatever way, and at once if an exception leaves the
-    context; Ctrl-C in a terminal is left to this process.
+    soon after this process dies, however it dies, and at once if an exception leaves
+    the context; Ctrl-C in a terminal is left to this process.
     """
     pool = ProcessPoolExecutor(
         min(cpu_count(), most_useful),
         initializer=_start_worker,
         initargs=(os.getpid(),),
     )
-    # Loky ends a worker that has grown by 300 MB, and starts another. Workers grow, as
-    # pydrake never frees a diagram with systems in Python, and no task is lost.
+    # Loky replaces workers that have grown by 300 MB, as they do because pydrake never
+    # frees a diagram with Python systems. No task is lost.
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "A worker stopped while some jobs")
         try:
@@ -62,7 +62,7 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
 
 
 def explain_broken_pool() -> str:
-    """Returns what a person can do when workers have died."""
+    """Returns a message about workers that have died."""
     return (
         "a worker process died: the system may have ended it for its memory, or"
         " compiled code may have crashed (stderr has what the workers said)"
@@ -70,7 +70,7 @@ def explain_broken_pool() -> str:
 
 
 def _start_worker(parent: int) -> None:
-    """Leaves Ctrl-C to the process that started this one, and ends soon after it."""
+    """Leaves Ctrl-C to the parent process, and makes this one end soon after it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def look() -> None:

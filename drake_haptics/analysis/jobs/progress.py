@@ -1,4 +1,4 @@
-"""A bar that shows on the terminal how far a study is."""
+"""Shows the progress of a study as a bar on the terminal."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from rich.progress import (
 
 
 class StudyProgress:
-    """A line at the foot of the terminal, removed when the study ends.
+    """A line at the bottom of the terminal, removed when the study ends.
 
     ::
 
         with StudyProgress("stiffness-damping map") as progress:
             results = run_study(function, tasks, progress=progress)
 
-    Where the output is not a terminal it writes nothing.
+    If the output is not a terminal, it writes nothing.
 
     Args:
         what: Name of the computation.
@@ -53,5 +53,5 @@ class StudyProgress:
         self._bar.stop()
 
     def __call__(self, done: int, total: int) -> None:
-        """Shows the numbers of tasks that are done and of all."""
+        """Shows the number of finished tasks and the number of all."""
         self._bar.update(self._task, completed=done, total=total)

@@ -1,6 +1,6 @@
-"""The file in which a study keeps its results, under the name of its function.
+"""Stores the results of a study in a file.
 
-The same name means the same results: it covers all that is bound to the function.
+A digest of the function and of all values bound to it identifies the results.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ PACKAGE_VERSION = version("drake_haptics")
 
 @dataclass(frozen=True)
 class StudyFunction:
-    """The identity of a function with what is bound to it.
+    """The identity of a function and of the values bound to it.
 
     Attributes:
         name: Module and qualified name, for people.
-        digest: Hash of the name, of all that is bound to it and of this package's
-            version, hex. The source of the function is not in it.
+        digest: Hash of the name, of all values bound to the function, and of this
+            package's version, hex. It does not cover the function's source.
     """
 
     name: str
@@ -42,8 +42,8 @@ class StudyFunction:
         """Identifies a top-level function, a partial of one, or a callable dataclass.
 
         Raises:
-            ValueError: The function is of another kind, or something that does not
-                pickle is bound to it.
+            ValueError: The function is of another kind, or a value bound to it cannot
+                be pickled.
         """
         name = _name_whole(function)
         try:
@@ -80,10 +80,10 @@ def _name_whole(function: Any) -> str:
 
 
 def _name(function: Any) -> str:
-    """Returns module and qualified name; a program is known by its file.
+    """Returns module and qualified name; the module of a program is its file.
 
     Raises:
-        ValueError: The function is not of the top level of a module.
+        ValueError: The function is not at the top level of a module.
     """
     module = getattr(function, "__module__", None)
     name = getattr(function, "__qualname__", "<object>")
@@ -98,25 +98,25 @@ def _name(function: Any) -> str:
     return f"{module}.{name}"
 
 
-# Every line begins so; a file without it belongs to somebody else.
+# Every line begins like this; a file without it is something else.
 _MARK = b'{"format":"drake_haptics study 1",'
 _DIGEST = b',"sha256":"'
-# Damaged lines that a warning names; more are only counted.
+# Largest number of damaged lines that a warning names.
 _NAMED_LINES = 10
 
 
 class StudyWarning(UserWarning):
-    """Something in a store that is skipped."""
+    """Warns of lines in a store that are skipped."""
 
 
 class StudyStore:
     """A file of JSON lines, one for each task that is done.
 
-    Each line stands on its own: the function's name and the hash of what is bound to
-    it, version of this package, key, task, result, and a hash over all that. The line
-    is handed to the operating system as soon as the result is there, so that killing
-    the program loses nothing that was reported done, and goes to the disk when the
-    store is closed. One program at a time may have it open.
+    Each line is complete: the function's name and digest, the version of this package,
+    key, task, result, and a hash over all of them. A line is written as soon as its
+    result is available, so that killing the program loses nothing that was reported as
+    done, and flushed to disk when the store is closed. Only one program at a time may
+    open it.
 
     Args:
         path: Path of the file, which is created if it does not exist.
@@ -153,12 +153,12 @@ class StudyStore:
             fcntl.flock(self._stream, fcntl.LOCK_UN)
 
     def load(self, tasks: Iterable[str]) -> dict[str, str]:
-        """Reads the results that are asked for.
+        """Reads the results of tasks.
 
-        Lines that are torn or damaged are skipped with a `StudyWarning`.
+        Incomplete or damaged lines are skipped with a `StudyWarning`.
 
         Returns:
-            Exact JSON of the results that are there, by task.
+            Exact JSON of the available results, by task.
 
         Raises:
             ValueError: The file holds another study, or something else.
@@ -182,7 +182,7 @@ class StudyStore:
                 f"store {self.path} is not a file of a study, and is left as it is:"
                 " give another one"
             )
-        if not line.endswith(b"\n"):  # the next result must not join a torn line
+        if not line.endswith(b"\n"):  # the next result must not join an incomplete line
             self._write(b"\n")
         self._warn(damaged)
         return results
@@ -213,7 +213,7 @@ class StudyStore:
             pass  # some network file systems have no locks
 
     def _check(self, record: dict[str, Any], number: int) -> None:
-        """Raises ValueError if a line is of another study."""
+        """Raises ValueError if a line belongs to another study."""
         if record["bound"] == self._function.digest:
             return
         name, by = record["function"], record["version"]
@@ -242,7 +242,7 @@ class StudyStore:
 
 
 def _read(line: bytes) -> dict[str, Any] | None:
-    """Returns what a line holds; None if a single bit of it is not as written."""
+    """Returns the content of a line; None if a single bit of it has changed."""
     body, _, end = line.rpartition(_DIGEST)
     if end != _hash(body) + b'"}\n':
         return None

@@ -23,7 +23,7 @@ from drake_haptics.analysis.jobs.pool import (
 from drake_haptics.analysis.jobs.store import StudyFunction, StudyStore
 from drake_haptics.common.value_checks import check_at_least
 
-# Failed tasks that a message tells of; all are in the error.
+# Largest number of failed tasks in a message; the error has all.
 _TOLD = 5
 
 
@@ -49,7 +49,7 @@ class TaskFailure:
 
 
 class StudyError(RuntimeError):
-    """Some tasks of a study have no result; the others have.
+    """Some tasks of a study have no result.
 
     Attributes:
         results: The result of each task, in their order; None for a failed task.
@@ -98,23 +98,23 @@ class Outcome:
 class StudyChunk:
     """A function and some tasks that travel to a worker together.
 
-    Executors see an object that they know nothing of: some look for their own futures
-    in lists and strings that they are given as arguments.
+    To an executor this is an opaque object: some search lists and strings in arguments
+    for their futures.
 
     Args:
         function: The function to call for each task.
-        tasks: JSON of each task by `to_exact_json`, so that every executor gives the
-            function the same new object, never one that another task has changed.
+        tasks: JSON of each task by `to_exact_json`, so that the function always gets a
+            new object, never one that another task has changed.
     """
 
     def __init__(self, function: Callable[[Any], Any], tasks: Sequence[str]):
         self._function = function
         self._tasks = tasks
-        # Dask's page shows it.
+        # Shown by Dask's dashboard.
         self.__name__ = getattr(function, "__name__", type(function).__name__)
 
     def __call__(self) -> list[Outcome]:
-        """Computes the tasks in turn."""
+        """Computes the tasks one by one."""
         nested = is_in_task()
         _state.in_task = True
         try:
@@ -126,7 +126,7 @@ class StudyChunk:
     def _compute(self, task: str) -> Outcome:
         try:
             return Outcome(self._to_json(self._function(from_exact_json(task))))
-        # Drake raises SystemExit where a condition of its own fails.
+        # pydrake raises SystemExit if an assertion of Drake fails.
         except (Exception, SystemExit) as error:
             reason = f"{type(error).__name__}: {error}"
             return Outcome(None, reason, traceback.format_exc())
@@ -139,12 +139,12 @@ class StudyChunk:
 
 
 def is_in_task() -> bool:
-    """Tells whether this thread is computing a task of a study."""
+    """Returns whether this thread is computing a task of a study."""
     return getattr(_state, "in_task", False)
 
 
-# Chunks that an executor has at a time: enough for a cluster of as many cores, and
-# little memory however many tasks there are.
+# Largest number of chunks that an executor has at a time: enough for a cluster with as
+# many cores, and little memory for any number of tasks.
 _IN_FLIGHT = 1024
 
 
@@ -159,38 +159,39 @@ def run_study(
 ) -> list[Any]:
     """Calls a function once for each task and returns the results in their order.
 
-    Tasks and results are data that JSON can keep exactly: None, bool, int, float
+    Tasks and results are data that exact JSON can hold: None, bool, int, float
     (infinities and NaN too), complex, str, NumPy arrays, and lists, tuples and dicts of
-    these. Each task is computed on its own, from a copy of itself and with BLAS on one
-    thread, and each result goes through the same text. So the results do not depend on
-    executor, number of workers, order, or on what a store already had: bit for bit on
-    processors of one kind, if the function depends on nothing but its task. A task that
-    is given twice is computed once.
+    these. Each task is computed from a copy, with BLAS on one thread, and each result
+    passes through the same text. So the results do not depend on the executor, the
+    number of workers, the order, or the content of a store: bit for bit on processors
+    of the same kind, if the function depends only on its task. A task that is given
+    twice is computed once.
 
     Args:
-        function: Function of one task. With a store it must be of the top level of a
-            module, a functools.partial of such, or a callable dataclass, and what is
-            bound to it must be data.
+        function: Function of one task. With a store it must be at the top level of a
+            module, a functools.partial of such a function, or a callable dataclass, and
+            values bound to it must be data.
         tasks: The tasks to call it with.
         executor: Any concurrent.futures.Executor, for instance
             `distributed.Client(...).get_executor()` of a Dask cluster. It stays open.
-            None opens a process for each core that this process may use, and closes
-            them in the end; inside of another study's task it computes in place.
-        store: File that keeps each result as soon as it is there. A call with the same
-            function and file computes only what is not in it yet, also after the
-            program was killed. See docs/stability.md.
-        progress: Called with the numbers of distinct tasks that are done (with a
-            result or failed) and of all, first with what the store had.
-        chunk_size: Tasks that travel to a worker together: more than 1 for tasks of
-            less than some milliseconds. Those of a chunk are kept when all are done.
+            Defaults to new processes, one for each core that this process may use;
+            within a task of another study, to computing in place.
+        store: File that stores each result as soon as it is available. A call with the
+            same function and file computes only what it does not yet contain, even
+            after the program was killed. See docs/stability.md.
+        progress: Function that is called with the number of distinct tasks that are
+            done or have failed, and the number of all; first with those of the store.
+        chunk_size: Number of tasks that are sent to a worker together; more than 1 is
+            useful for tasks of less than some milliseconds. The store gets the results
+            of a chunk when all are done.
 
     Returns:
         A result for each task.
 
     Raises:
-        StudyError: Tasks raised, or workers died. It has the results of the others.
+        StudyError: Tasks raised, or workers died. The error has the other results.
         KeyboardInterrupt: Ctrl-C was pressed; the message says how many tasks are done.
-        ValueError: An argument cannot be used, or the store is of another study.
+        ValueError: An argument is invalid, or the store belongs to another study.
         OSError: The store cannot be written.
     """
     _check_arguments(function, executor, chunk_size)
@@ -213,7 +214,7 @@ def run_study(
 
 
 class _Study:
-    """The tasks of a study that are done. Tasks are known by their exact JSON."""
+    """The finished tasks of a study, by their exact JSON."""
 
     def __init__(
         self,
@@ -231,15 +232,15 @@ class _Study:
         self._results = store.load(self._distinct) if store is not None else {}
 
     def compute(self, executor: Executor | None, chunk_size: int) -> None:
-        """Computes the tasks that are not done, and keeps their results."""
+        """Computes the remaining tasks and stores their results."""
         self._report()
         pending = [key for key in self._distinct if key not in self._results]
         if not pending:
             return
         chunks = -(-len(pending) // chunk_size)
         with (
-            # The threads of an executor share this process's BLAS: where each held it
-            # for its own chunk, the first to end would free it for the others.
+            # The threads of an executor share the BLAS of this process: if each limited
+            # it for its chunk, the first to end would lift the limit for the others.
             one_blas_thread(),
             _open_executor(executor, chunks) as workers,
             closing(_compute(workers, self._function, pending, chunk_size)) as done,
@@ -249,7 +250,7 @@ class _Study:
                 self._report()
 
     def tell(self, why: str) -> str:
-        """Returns why the study has ended, what is done and how to go on."""
+        """Returns why the study has ended, what is done and how to continue."""
         done = f"{len(self._results)} of {len(self._distinct)} tasks are done"
         if self._store is None:
             return f"{why} {done}; a store would keep them for the next call"
@@ -265,7 +266,7 @@ class _Study:
         return StudyError(self.tell(why), self.take_results(), failures)
 
     def take_results(self) -> list[Any]:
-        """Returns a new object for each task; None where there is no result."""
+        """Returns a new object for each task; None if there is no result."""
         return [from_exact_json(self._results.get(key, "null")) for key in self._keys]
 
     def _keep(self, key: str, outcome: Outcome) -> None:
@@ -288,7 +289,7 @@ def _compute(
     pending: Iterable[str],
     chunk_size: int,
 ) -> Generator[tuple[str, Outcome], None, None]:
-    """Yields tasks with their outcomes as they come; cancels the rest when closed."""
+    """Yields tasks with their outcomes as they finish; cancels the rest when closed."""
     finished: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
     in_flight: dict[Future[list[Outcome]], list[str]] = {}
     rest = iter(pending)
@@ -313,13 +314,13 @@ def _compute(
 def _take(
     in_flight: dict[Future[list[Outcome]], list[str]], future: Future[list[Outcome]]
 ) -> Iterator[tuple[str, Outcome]]:
-    """Yields the tasks of a chunk that has come back."""
+    """Yields the tasks of a finished chunk with their outcomes."""
     chunk = in_flight.pop(future)
     try:
         outcomes = future.result()
     except (BrokenExecutor, CancelledError):
         raise
-    except Exception as error:  # the chunk was lost on its way there or back
+    except Exception as error:  # the chunk could not be sent or received
         reason = f"{type(error).__name__}: {error}"
         outcomes = [Outcome(None, reason, traceback.format_exc())] * len(chunk)
     yield from zip(chunk, outcomes, strict=True)

@@ -1,1 +1,1 @@
-"""Haply's Inverse3 behind the interface of a device."""
+"""Haply's Inverse3 as a device."""

@@ -1,7 +1,7 @@
-"""The dialogue with Haply's Inverse Service: its JSON messages and our answers.
+"""Parses JSON messages of Haply's Inverse Service, and answers them.
 
-Time is an argument, and nothing here opens a connection. docs/connect-a-device.md
-names the sources.
+Time is an argument, and this module opens no connection. docs/connect-a-device.md names
+the sources.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from drake_haptics.device.rotation_vector import TurnRate
 ForceField = Literal["vector", "values"]
 """Name that the service gives the force in a command: `values` before version 3.5."""
 
-# Asks for the list of devices, and moves nothing.
+# Requests the list of devices, and moves nothing.
 ASK_FOR_DEVICES = json.dumps({"session": {"force_render_full_state": {}}})
 
 _GRIPS = ("wireless_verse_grip", "verse_grip")
 _BUTTONS = ("a", "b", "c")
-# A grip's quaternion is of length one but for the few digits that it is sent with.
+# Relative error of a quaternion's length, from the few digits that are sent.
 _QUATERNION_SLACK = 0.01
-# A service that says nothing usable for so long is at fault.
+# A service that sends nothing usable for this long is at fault.
 SILENT_NS = 100_000_000
 _TURN_RATE_TIME_CONSTANT_S = 0.01
 
@@ -70,14 +70,15 @@ def parse_state(
     Args:
         text: The message.
         device_id: Identifier of the Inverse3. Defaults to the first one listed.
-        grip_id: Identifier of the VerseGrip; the first one listed where not given, the
-            wireless ones before those with a wire.
+        grip_id: Identifier of the VerseGrip. Defaults to the first one listed, wireless
+            ones first.
 
     Returns:
         The state; None if the message does not list the device.
 
     Raises:
-        HaplyMessageError: It is no JSON, lacks a key, or a number is not finite.
+        HaplyMessageError: The message is not JSON, lacks a key, or has a number that is
+            not finite.
     """
     try:
         message = json.loads(text)
@@ -129,7 +130,7 @@ def format_force(
 def _find_device(
     message: Any, kind: str, device_id: str | None
 ) -> dict[str, Any] | None:
-    """Returns a device of a kind out of a message, None if it is not listed."""
+    """Returns a device of a kind from a message; None if it is not listed."""
     if not isinstance(message, dict):
         raise HaplyMessageError("the message is not an object")
     devices = message.get(kind, [])
@@ -147,7 +148,7 @@ def _get(item: Any, key: str) -> Any:
     """Returns an object's value.
 
     Raises:
-        HaplyMessageError: It has none.
+        HaplyMessageError: The object does not have the key.
     """
     if not isinstance(item, dict) or key not in item:
         raise HaplyMessageError(f"{key} is missing")
@@ -158,7 +159,7 @@ def _read_numbers(item: Any, names: str) -> tuple[float, ...]:
     """Returns the named numbers of an object.
 
     Raises:
-        HaplyMessageError: One is missing, no number or not finite.
+        HaplyMessageError: A value is missing, not a number or not finite.
     """
     values = [_get(item, name) for name in names]
     for value in values:
@@ -187,7 +188,7 @@ def _read_quaternion(item: Any) -> tuple[float, ...]:
 
 
 class HaplyExchange:
-    """One device's side of the conversation: a message in, a message out.
+    """Answers the messages of the service for one device.
 
     Args:
         gate: Decides what force is shown.
@@ -217,32 +218,32 @@ class HaplyExchange:
         self.reading: DeviceReading | None = None
         """The newest reading."""
         self.has_grip = False
-        """Tells whether a grip told its orientation in the newest message."""
+        """Whether the newest message has the orientation of a grip."""
         self.rejected = 0
-        """Messages that could not be used."""
+        """Number of messages that could not be used."""
         self.complaint = "it has sent nothing"
-        """The complaint about the last message of the service."""
+        """What was wrong with the last message that could not be used."""
 
     @property
     def is_released(self) -> bool:
-        """Tells whether no force is shown or asked for."""
+        """Whether no force is shown or commanded."""
         return self._gate.state is not GateState.ACTIVE
 
     def release(self) -> None:
-        """Ramps the force out, or leaves a fault, in the answers to come.
+        """Ramps the force down, or ends a fault, in the next answers.
 
-        After that, a command that is new ramps it in again.
+        After that, a new command ramps it up again.
         """
         self._releases = True
 
     def answer(
         self, text: str | bytes, command: DeviceCommand | None, now_ns: int
     ) -> str:
-        """Takes a message in and returns the answer.
+        """Receives a message and returns the answer.
 
         Args:
             text: Message of the service.
-            command: Newest command, if there is one; each is obeyed once.
+            command: Newest command, or None; each is executed once.
             now_ns: The time, ns; never goes back.
         """
         try:
@@ -274,35 +275,35 @@ class HaplyExchange:
         return self._format(F_Ho_B)
 
     def end(self) -> str:
-        """Ends all force at once and returns the message that says so.
+        """Ends all force at once and returns the message to send.
 
-        It is for a service that gives no further turn: a later one must not go on with
-        the force of the last.
+        It is for a service that sends no further message, so that a later one cannot
+        continue the last force.
         """
         self._gate.fail()
         return self._format(np.zeros(6))
 
     def fall_silent(self) -> None:
-        """Has the reading say that the service says nothing usable."""
+        """Marks the reading as one of a silent service."""
         if self.reading is not None and self.reading.fault is not Fault.DEVICE:
             self.reading = make_silent(self.reading)
 
     def _answer_blindly(self, command: DeviceCommand | None, now_ns: int) -> str:
-        """Returns the answer to a message that tells nothing of the device."""
+        """Returns the answer to a message without the device's state."""
         reading = self.reading
         if reading is None:
             return ASK_FOR_DEVICES
         is_silent = self._fail_after_silence(now_ns)
         if is_silent:
             self.fall_silent()
-            self._obeyed = command  # A command that no device heard is never shown.
-        # For a while the handle is taken to be where it was: one message that is lost
-        # must not be felt.
+            self._obeyed = command  # A command that no device received is never shown.
+        # A single lost message must not be felt, so the handle is assumed not to have
+        # moved.
         F_Ho_B = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
         return ASK_FOR_DEVICES if is_silent else self._format(F_Ho_B)
 
     def _fail_after_silence(self, now_ns: int) -> bool:
-        """Returns whether the service was silent; then force ends, and is a fault."""
+        """Returns whether the service was silent, which ends force as a fault."""
         is_silent = now_ns - self._heard_ns > SILENT_NS
         if is_silent and not self.is_released:
             self._gate.fail()
@@ -329,7 +330,7 @@ class HaplyExchange:
         V_BH: np.ndarray,
         now_ns: int,
     ) -> np.ndarray:
-        """Returns the wrench (6,) that the gate lets pass."""
+        """Returns the wrench (6,) that the gate allows."""
         if self._releases:
             self._gate.release(now_ns)
             self._obeyed = command

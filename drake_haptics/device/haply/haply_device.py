@@ -1,4 +1,4 @@
-"""Haply's Inverse3 with a VerseGrip, through Haply's Inverse Service."""
+"""Connects to Haply's Inverse3 with a VerseGrip, by Haply's Inverse Service."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from drake_haptics.device.haply.exchange import (
 
 _RETRY_S = 0.1
 _CONNECT_S = 1.0
-# Ticks that the lateness covers: a second of them.
+# Number of ticks that the lateness covers, a second.
 _LATENESS_TICKS = 1000
 # Options that an address may have.
 _OPTIONS: dict[str, Callable[[str], Any]] = {
@@ -40,25 +40,25 @@ _OPTIONS: dict[str, Callable[[str], Any]] = {
     "force_field": str,
     "max_force_N": float,
 }
-# Much longer than a force takes to ramp out, and a connection to be given up.
+# Much longer than ramping down a force or closing a connection takes.
 _CLOSING_S = 3.0
 
 
 class HaplyDevice(DeviceBackend):
-    """An Inverse3, which shows force but no torque, and the grip that turns on it.
+    """An Inverse3, which shows force but no torque, with a grip that turns freely.
 
-    A thread of its own speaks with the service: strictly in turn, a force for each
-    state. What it sends has passed the same gate as on any device. `read` and `write`
-    only exchange values with that thread.
+    A thread communicates with the service: it answers each state with a force, which
+    has passed the same gate as on any device. `read` and `write` only exchange values
+    with that thread.
 
-    Frame B is the service's own: x to the right, y forward, z up. The position and the
-    linear velocity are those of the cursor. The orientation is the grip's and the
+    Frame B is that of the service: x to the right, y forward, z up. The position and
+    the linear velocity are those of the cursor. The orientation is the grip's and the
     angular velocity the smoothed difference of its orientations (see `TurnRate`).
-    Without a grip the orientation is the identity, or the last one that was known, and
-    `has_grip` is False.
+    Without a grip the orientation is the last known one or the identity, and `has_grip`
+    is False.
 
-    A service that says nothing usable for 0.1 s, or has gone, is `Fault.DEVICE` in
-    the readings. When it is back, a device that showed force stays at fault until
+    If the service sends nothing usable for 0.1 s or has gone, the readings have
+    `Fault.DEVICE`. When it is back, a device that showed force stays at fault until
     `recover`.
     """
 
@@ -84,7 +84,7 @@ class HaplyDevice(DeviceBackend):
                 version 3.5.
             max_force_N: Largest force ever shown, N.
             ttl_s: Time for which a written wrench holds without a newer one, s.
-            rate_hz: Exchanges per second, Hz, as far as the service keeps up.
+            rate_hz: Largest number of exchanges per second, Hz.
             timeout_s: Time to wait for the first state, s.
 
         Raises:
@@ -104,7 +104,7 @@ class HaplyDevice(DeviceBackend):
             force_field,
         )
         self._clock = RealTimePacer(1.0 / rate_hz)
-        # Handed to the thread; replaced as a whole, never changed.
+        # Shared with the thread; replaced, never modified.
         self._command: DeviceCommand | None = None
         self._closes = False
         self._has_reading = threading.Event()
@@ -122,7 +122,7 @@ class HaplyDevice(DeviceBackend):
 
     @staticmethod
     def open(uri: str, options: str = "") -> HaplyDevice:
-        """Returns the device at an address that a person wrote.
+        """Returns the device at an address.
 
         Args:
             uri: Address of the service.
@@ -131,7 +131,7 @@ class HaplyDevice(DeviceBackend):
                 `force_field` and `max_force_N`.
 
         Raises:
-            DeviceError: There is no such device or option, or a value is impossible.
+            DeviceError: There is no such device or option, or a value is invalid.
         """
         arguments: dict[str, Any] = {}
         try:
@@ -149,7 +149,7 @@ class HaplyDevice(DeviceBackend):
 
     @property
     def has_grip(self) -> bool:
-        """Tells whether a VerseGrip tells the orientation."""
+        """Whether a VerseGrip measures the orientation."""
         return self._exchange.has_grip
 
     def read(self) -> DeviceReading | None:
@@ -157,27 +157,27 @@ class HaplyDevice(DeviceBackend):
         return self._exchange.reading
 
     def write(self, command: DeviceCommand) -> None:
-        """Asks for a wrench; the torque and the slopes are not used.
+        """Commands a wrench; the torque and the slopes are not used.
 
         Raises:
-            ValueError: The wrench is not of six numbers.
+            ValueError: The wrench does not have six numbers.
         """
         if np.shape(command.F_Ho_B) != (6,):
             raise ValueError(f"F_Ho_B must be (6,), is {np.shape(command.F_Ho_B)}")
         self._command = command
 
     def recover(self) -> None:
-        """Leaves a fault of the gate; the next `write` ramps the force in."""
+        """Ends a fault of the gate, so that the next `write` ramps the force up."""
         self._exchange.release()
 
     def close(self) -> None:
-        """Ramps the force out, which takes 20 ms, and disconnects."""
+        """Ramps the force down, which takes 20 ms, and disconnects."""
         self._exchange.release()
         self._closes = True
         self._thread.join(_CLOSING_S)
 
     def get_link_status(self) -> LinkStatus:
-        """Returns the counts; the protocol has no numbers to tell losses by."""
+        """Returns the counts; losses are unknown, as the protocol has no numbers."""
         reading = self._exchange.reading
         return LinkStatus(
             received=0 if reading is None else reading.sequence,
@@ -186,7 +186,7 @@ class HaplyDevice(DeviceBackend):
         )
 
     def _run(self) -> None:
-        """Connects again and again, until the device is closed."""
+        """Connects repeatedly, until the device is closed."""
         try:
             while not self._closes:
                 try:
@@ -207,13 +207,13 @@ class HaplyDevice(DeviceBackend):
             self._exchange.fall_silent()
 
     def _converse(self, socket: ClientConnection) -> None:
-        """Answers each message in turn, until the device is closed."""
+        """Answers each message, until the device is closed."""
         while not (self._closes and self._exchange.is_released):
             try:
                 text = socket.recv(timeout=1e-9 * SILENT_NS)
             except TimeoutError:
                 if self._closes:
-                    # Out of turn, since there is no time left to wait for one.
+                    # Not an answer, since there is no time left to wait for a message.
                     socket.send(self._exchange.end())
                     return
                 self._connection = f"{self._uri} says nothing"
@@ -230,7 +230,7 @@ class HaplyDevice(DeviceBackend):
 
 
 def _read_option(name: str, text: str) -> Any:
-    """Returns the value of an option as a person wrote it."""
+    """Returns the value of an option in an address."""
     try:
         return _OPTIONS[name](text)
     except ValueError as error:

@@ -1,1 +1,1 @@
-"""The device port's LCM messages, and a device behind them."""
+"""LCM messages of a haptic device, and a device that uses them."""

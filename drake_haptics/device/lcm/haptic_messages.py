@@ -1,8 +1,8 @@
-"""The LCM types of the .lcm files in this folder, as immutable values.
+"""Defines the LCM types of the .lcm files in this folder as immutable values.
 
-They are what Python's `lcm` package and `lcm-gen` would generate, which Drake's wheel
-does not contain: the bytes are the same (tests/device/lcm/test_lcm_types.py). The .lcm
-files describe each member; other languages get their types by `lcm-gen`.
+Drake's wheel does not contain `lcm-gen` and Python's `lcm` package, whose messages have
+the same bytes (tests/device/lcm/test_lcm_types.py). The .lcm files describe each
+member; for other languages `lcm-gen` generates types from them.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _CONSTANT_LENGTH = 0
 _UINT64 = (1 << 64) - 1
 
 _Message = TypeVar("_Message", bound="FixedMessage")
-# A quaternion of length one, but for the few digits that a driver may send.
+# Error of a quaternion's length, from the few digits that a driver may send.
 _QUATERNION_SLACK = 0.01
 
 
@@ -48,7 +48,7 @@ class Layout:
     Attributes:
         members: Name and length of each member.
         packer: Packs the fingerprint and all numbers.
-        fingerprint: Tells one type from another.
+        fingerprint: Identifies the type.
     """
 
     members: tuple[tuple[str, int | None], ...]
@@ -57,9 +57,9 @@ class Layout:
 
 
 class FixedMessage:
-    """Base of a frozen dataclass whose fields are each a `member` in the file's order.
+    """Base class of a frozen dataclass whose fields are members in the file's order.
 
-    It gets its layout by the decorator `lay_out`, above that of the dataclass.
+    The decorator `lay_out`, above that of the dataclass, sets the layout.
     """
 
     layout: ClassVar[Layout]
@@ -82,7 +82,7 @@ class FixedMessage:
         """Returns the message that is encoded in bytes.
 
         Raises:
-            ValueError: The bytes are not of this type.
+            ValueError: The bytes are not a message of this type.
         """
         layout = cls.layout
         if len(data) != layout.packer.size:
@@ -108,7 +108,7 @@ class FixedMessage:
 
 
 def lay_out(cls: type[_Message]) -> type[_Message]:
-    """Gives a message type its layout.
+    """Sets the layout of a message type.
 
     The fingerprint is that of LCM's type specification: a hash over names, types and
     dimensions of the members in their order (`lcm_struct_hash` of lcm-gen), rotated
@@ -130,7 +130,7 @@ def lay_out(cls: type[_Message]) -> type[_Message]:
 
 def _hash_byte(value: int, byte: int) -> int:
     """Returns the hash (64 bits) after one more byte."""
-    # The shift to the right is an arithmetic one: lcm-gen's hash is signed.
+    # The shift to the right is arithmetic, because lcm-gen's hash is signed.
     signed = value - (1 << 64) if value >> 63 else value
     return ((signed << 8) ^ (signed >> 55)) + byte & _UINT64
 
@@ -150,19 +150,18 @@ class lcmt_haptic_status(FixedMessage):
 
     Attributes:
         utime: The device's monotonic clock, µs.
-        boot: Random for each start of the device, from 1 to 2³² − 1.
-        sequence: Rises by one with each message.
-        session: The run of a host that is served, 0 for none.
-        command_sequence: Number of its newest command that was accepted, 0 for none.
+        boot: Random number for each start of the device, from 1 to 2³² − 1.
+        sequence: Number that increases by one with each message.
+        session: Session of the host that is served; 0 for none.
+        command_sequence: Number of its newest accepted command; 0 for none.
         pose: (7,) X_BH as [qw qx qy qz x y z], unit quaternion, m.
         velocity: (6,) V_BH as [ω; v], rad/s and m/s.
         wrench: (6,) wrench that is shown at Ho, [τ; f], N·m and N.
         max_force: The largest force that is ever shown, N.
         max_torque: The largest torque, N·m.
         buttons: Bit i is set while button i is held.
-        rejected: Commands that were refused since the start.
-        gate: A `GateState`.
-        fault: A `Fault`.
+        rejected: Number of commands that were refused since the start.
+        gate: A `GateState`. fault: A `Fault`.
     """
 
     utime: int = member("int64_t")
@@ -188,8 +187,8 @@ class lcmt_haptic_command(FixedMessage):
 
     Attributes:
         utime: The host's monotonic clock, µs.
-        session: Random for each run of a host, from 1 to 2³² − 1.
-        sequence: Rises with each message.
+        session: Random number for each run of a host, from 1 to 2³² − 1.
+        sequence: Number that increases with each message.
         time_to_live: Time for which this holds without a newer one, µs.
         enable: Whether the device may show force.
         wrench: (6,) wrench on the handle at Ho in B, [τ; f], N·m and N.
@@ -204,7 +203,7 @@ class lcmt_haptic_command(FixedMessage):
 
 
 def find_flaw(status: lcmt_haptic_status) -> str | None:
-    """Returns why a status must not be used; None where it may be."""
+    """Returns why a status must not be used; None if it may be."""
     for name in ("pose", "velocity", "wrench"):
         if not all(map(math.isfinite, getattr(status, name))):
             return f"{name} is not finite"

@@ -1,4 +1,4 @@
-"""A device behind LCM: the host's handshake with its gate, and the transport."""
+"""Connects to a device over LCM, with the host's part of the gate's handshake."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 
-# A device that was asked for force and stays idle for so long has not understood.
+# A device that stays idle for this long after it was enabled has missed a release.
 _UNHEARD_S = 0.25
 STATUS_CHANNEL = "HAPTIC_STATUS"
 COMMAND_CHANNEL = "HAPTIC_COMMAND"
 
-# LCM itself answers an unusable URL by a line on stderr, and then does nothing.
+# Given an unusable URL, LCM only prints a line on stderr and then does nothing.
 _URL = r"(memq://|udpm://2(2[4-9]|3\d)(\.\d{1,3}){3}:\d{1,5}(\?\S+)?)?"
 _LONGEST_TTL_S = 10.0
 _SILENT_S = 0.25
@@ -51,10 +51,10 @@ class _Phase(Enum):
 class HostHandshake:
     """A host's part of the gate's rules.
 
-    A device takes force only from a host that it has heard ask for none, and one at
-    fault only after that. So a host releases until the device has answered a release,
-    and then enables. A fault after that, and a device that is restarted, falls
-    silent or serves this host no more, are left alone until somebody wants it back.
+    A device accepts force only from a host that has sent a release before, also after a
+    fault. So a host sends releases until the device has acknowledged one, and then
+    enables it. After a fault, or if the device is restarted, falls silent or no longer
+    serves this host, the host sends nothing until `recover`.
 
     Args:
         session: Session of this host, as in its commands.
@@ -64,7 +64,7 @@ class HostHandshake:
         self._session = session
         self._is_served = False
         self._phase = _Phase.RELEASES
-        # The commands that released since the phase began.
+        # Numbers of the releases since the phase began.
         self._first_release = 0
         self._last_release = 0
         self._boot = 0
@@ -72,7 +72,7 @@ class HostHandshake:
 
     @property
     def is_at_fault(self) -> bool:
-        """Tells whether the device is left alone."""
+        """Whether the host sends nothing to the device."""
         return self._phase is _Phase.AT_FAULT
 
     def fall_silent(self) -> None:
@@ -84,7 +84,7 @@ class HostHandshake:
             self._phase = _Phase.AT_FAULT
 
     def recover(self) -> None:
-        """Leaves a fault, by starting over."""
+        """Starts over after a fault."""
         if self._phase is _Phase.AT_FAULT:
             self._start_over()
 
@@ -121,10 +121,10 @@ class HostHandshake:
             self._start_over()
 
     def choose(self, sequence: int) -> bool | None:
-        """Returns whether the next command enables; None if there is to be none.
+        """Returns whether the next command enables; None if none may be sent.
 
         Args:
-            sequence: Number that the command would have; from 1 on.
+            sequence: Number that the command would have, at least 1.
         """
         if self._phase is _Phase.AT_FAULT:
             return None
@@ -135,20 +135,21 @@ class HostHandshake:
         return True
 
     def _start_over(self) -> None:
-        """Goes back to the first phase."""
+        """Returns to the first phase."""
         self._phase = _Phase.RELEASES
         self._is_served = False
         self._first_release = 0
 
 
 class LcmDevice(DeviceBackend):
-    """A device whose driver sends `lcmt_haptic_status` and obeys `lcmt_haptic_command`.
+    """A device that sends `lcmt_haptic_status` and obeys `lcmt_haptic_command`.
 
-    The gate is the driver's: `HapticCommandReceiver`, or the driver's own. This side
-    keeps to the gate's rules by a `HostHandshake`. It has no thread: messages come in
-    by `read` and go out by `write`, which must be called in every tick.
+    The driver has the gate, such as `HapticCommandReceiver`. This side follows its
+    rules by a `HostHandshake`. It has no thread: `read` receives messages and `write`
+    sends them, and both must be called in every tick.
 
-    The slopes of a command are not sent: between two commands the wrench is constant.
+    The slopes of a command are not sent, so that the wrench is constant between
+    commands.
     """
 
     def __init__(
@@ -163,8 +164,8 @@ class LcmDevice(DeviceBackend):
         """Subscribes.
 
         Args:
-            lcm: LCM to use; no `LcmInterfaceSystem` handles its subscriptions, as a
-                simulator of Drake 1.58 cannot call handlers of Python.
+            lcm: LCM to use. No `LcmInterfaceSystem` may handle its subscriptions,
+                because a simulator of Drake 1.58 cannot call Python handlers.
             status_channel: Channel on which the device sends.
             command_channel: Channel at which it listens.
             ttl_s: Time for which a wrench holds without a newer one, s; the device may
@@ -192,7 +193,7 @@ class LcmDevice(DeviceBackend):
 
     @staticmethod
     def open(url: str = "", **options: Any) -> LcmDevice:
-        """Returns the device that is heard at a URL.
+        """Returns the device at a URL.
 
         Args:
             url: URL of LCM, like `udpm://239.255.76.67:7667?ttl=0`; empty for LCM's
@@ -200,7 +201,7 @@ class LcmDevice(DeviceBackend):
             **options: Arguments of the constructor.
 
         Raises:
-            DeviceError: LCM has no such transport, or no way to the network.
+            DeviceError: LCM has no such transport, or cannot use the network.
         """
         if not re.fullmatch(_URL, url):
             raise DeviceError(
@@ -215,10 +216,10 @@ class LcmDevice(DeviceBackend):
             ) from error
 
     def read(self) -> DeviceReading | None:
-        """Returns the newest reading that has come; its time is the device's clock.
+        """Returns the newest reading; its time is the device's clock.
 
-        After 0.25 s without any, and where the device was restarted, it says
-        `Fault.DEVICE`, until `recover`; nothing is asked of the device meanwhile.
+        After 0.25 s without a message, or after a restart of the device, it has
+        `Fault.DEVICE`, and nothing is sent to the device, until `recover`.
         """
         if not self._is_closed:
             self._lcm.HandleSubscriptions(0)
@@ -229,10 +230,10 @@ class LcmDevice(DeviceBackend):
         return self._reading
 
     def write(self, command: DeviceCommand) -> None:
-        """Sends a wrench, or the release that must come before.
+        """Sends a wrench, or the release that must precede it.
 
         Raises:
-            ValueError: The wrench is not of six numbers.
+            ValueError: The wrench does not have six numbers.
         """
         if np.shape(command.F_Ho_B) != (6,):
             raise ValueError(f"F_Ho_B must be (6,), is {np.shape(command.F_Ho_B)}")
@@ -243,11 +244,11 @@ class LcmDevice(DeviceBackend):
             self._send(np.asarray(command.F_Ho_B) if enable else np.zeros(6), enable)
 
     def recover(self) -> None:
-        """Leaves a fault; the next writes release the device and enable it again."""
+        """Ends a fault: the next writes release the device and enable it again."""
         self._handshake.recover()
 
     def close(self) -> None:
-        """Releases the device, which ramps out by itself."""
+        """Releases the device, which then ramps the force down."""
         if not self._is_closed:
             for _ in range(_CLOSING_RELEASES):
                 self._send(np.zeros(6), enable=False)
@@ -275,7 +276,7 @@ class LcmDevice(DeviceBackend):
         self._lcm.Publish(self._channel, message.encode())
 
     def _receive(self, data: bytes) -> None:
-        """Takes a status in, or refuses and counts it."""
+        """Receives a status, or refuses and counts it."""
         try:
             status = lcmt_haptic_status.decode(data)
         except ValueError:
@@ -308,7 +309,7 @@ class LcmDevice(DeviceBackend):
 
 
 def _normalize(pose: tuple[float, ...]) -> np.ndarray:
-    """Returns a pose (7,) with its quaternion at length one."""
+    """Returns a pose (7,) with its quaternion normalized."""
     X = np.array(pose)
     X[:4] /= np.linalg.norm(X[:4])
     return X

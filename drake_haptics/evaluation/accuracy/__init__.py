@@ -1,4 +1,4 @@
-"""Measures what accuracy costs in time on this machine.
+"""Measures how much time accuracy takes on this machine.
 
 `drake-haptics accuracy` is the command.
 """

@@ -1,4 +1,4 @@
-"""Picks the most accurate setting of a scene that holds a time budget; explains it."""
+"""Finds the most accurate setting of a scene within a time budget, and explains it."""
 
 from __future__ import annotations
 
@@ -23,22 +23,19 @@ from drake_haptics.evaluation.accuracy.setting import (
 )
 from drake_haptics.scene.schema import Scene
 
-# A budget is kept if later runs keep it within this factor.
+# Factor of the budget within which later runs must stay.
 PROMISE = 1.1
 RUNS = 5
-# Something else may disturb one in this many runs.
+# One in this many runs may be disturbed.
 _SPARED = 5
 _EACH_OBJECT = "environment."
 
 
 @dataclass(frozen=True)
 class Trial:
-    """Fresh runs of a combination in turns with the scene as it is.
+    """Runs of a combination in new processes, in turns with the unchanged scene.
 
-    Attributes:
-        combination: Combination that was run.
-        p99_us: 99th percentile of the tick in each of its runs, µs.
-        scene_p99_us: 99th percentile of the tick in each of the scene's runs, µs.
+    For each run there is the 99th percentile of the tick.
     """
 
     combination: Combination
@@ -47,18 +44,18 @@ class Trial:
 
     @property
     def middle_us(self) -> float:
-        """The median of its runs, µs."""
+        """Median of its runs, µs."""
         return statistics.median(self.p99_us)
 
     @property
     def scene_us(self) -> float:
-        """The median of the scene's runs, µs; NaN if there are none."""
+        """Median of the scene's runs, µs; NaN without runs."""
         return statistics.median(self.scene_p99_us or (math.nan,))
 
     def holds(self, budget_us: float) -> bool:
         """Tells whether it keeps a budget, and will keep it within 10 % in later runs.
 
-        The median of the runs must keep it, and four fifths of them must within 10 %.
+        The median of the runs must hold it, and four fifths of them within 10 %.
         """
         nearly_worst_us = sorted(self.p99_us)[-1 - len(self.p99_us) // _SPARED]
         return self.middle_us <= budget_us and nearly_worst_us <= PROMISE * budget_us
@@ -69,13 +66,12 @@ class BudgetChoice:
     """The outcome of a budget.
 
     Attributes:
-        budget_us: Budget for the whole tick at its 99th percentile, µs.
-        scene: Scene with the choice's settings, or the fastest ones if none holds it.
+        scene: Scene with the chosen settings, or with the fastest if none holds the
+            budget.
         trial: Runs of the choice, or of the fastest combination.
-        holds: Whether the budget is kept.
-        trials: All trials, that of the scene as it is first.
-        errors: Errors of all settings of the choice together; None if they are fewer
-            than two, or if nothing holds.
+        trials: All trials, first that of the unchanged scene.
+        errors: Errors of all chosen settings together; None if there are fewer than
+            two, or if nothing holds the budget.
     """
 
     budget_us: float
@@ -87,7 +83,7 @@ class BudgetChoice:
 
     @property
     def is_scene(self) -> bool:
-        """Tells whether the scene is left as it is."""
+        """Whether the scene is unchanged."""
         return not self.trial.combination.rows
 
 
@@ -100,22 +96,22 @@ def choose_setting(
     progress: Callable[[str, float], None] | None = None,
     runs: int = RUNS,
 ) -> BudgetChoice:
-    """Picks the most accurate combination of settings that holds a time budget.
+    """Finds the most accurate combination of settings that holds a time budget.
 
-    The scene as it is comes first. If it does not hold the budget, the study predicts
-    which combination does. Combinations are then run, in turns with the scene, until
-    one holds the budget while the next more accurate one does not.
+    The unchanged scene is tried first. If it does not hold the budget, the study
+    predicts which combination does. Combinations are then run, in turns with the scene,
+    until one holds the budget and the next more accurate one does not.
 
     Args:
         scene: Scene to make faster.
         budget_us: Budget for the whole tick at its 99th percentile, µs.
-        make_study: Function that measures settings, all of them for None; called only
-            if the scene does not hold, and at the end with several chosen settings as
-            one.
+        make_study: Function that measures settings, or all of them for None. It is
+            called only if the scene does not hold the budget, and at the end with
+            several chosen settings as one.
         measure_p99: Function that runs a scene in a new process and returns the 99th
             percentile of its ticks, µs.
-        progress: Callback that takes the current work and the share of it that is done,
-            in [0, 1].
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
         runs: Number of runs of each combination.
 
     Raises:
@@ -138,7 +134,7 @@ def choose_setting(
     done = {0: as_it_is}
 
     def hold(index: int) -> bool:
-        """Tells whether a combination holds the budget, by runs of it."""
+        """Returns whether a combination holds the budget, by running it."""
         if index not in done:
             what = f"combination {index} of {len(chain) - 1}"
             done[index] = _try_out(
@@ -148,7 +144,8 @@ def choose_setting(
                 runs,
                 lambda i: report(f"{what}: run {i + 1} of {runs}", i / runs),
             )
-            done[0] = _add_scene_runs(done[0], done[index])
+            p99_us = (*done[0].p99_us, *done[index].scene_p99_us)
+            done[0] = Trial(done[0].combination, p99_us, p99_us)
         return done[index].holds(budget_us)
 
     last = len(chain) - 1
@@ -157,8 +154,7 @@ def choose_setting(
     )
     while index < last and not hold(index):
         index += 1
-    # A more accurate one may hold against the prediction, after further runs even the
-    # scene itself.
+    # A more accurate one may hold the budget despite the prediction.
     while hold(index) and index > 0 and hold(index - 1):
         index -= 1
     if done[0].holds(budget_us):
@@ -177,12 +173,6 @@ def choose_setting(
     )
 
 
-def _add_scene_runs(as_it_is: Trial, other: Trial) -> Trial:
-    """Returns the scene's trial, with the scene's runs beside another trial added."""
-    p99_us = (*as_it_is.p99_us, *other.scene_p99_us)
-    return Trial(as_it_is.combination, p99_us, p99_us)
-
-
 def _try_out(
     combination: Combination,
     scene: Scene,
@@ -190,7 +180,7 @@ def _try_out(
     runs: int,
     begin_run: Callable[[int], None],
 ) -> Trial:
-    """Runs a combination and the scene in turns; one that fails holds no budget."""
+    """Runs a combination and the scene in turns; a failure holds no budget."""
     changed = combination.setting.apply(scene)
     own: list[float] = []
     scenes: list[float] = []
@@ -205,7 +195,7 @@ def _try_out(
 
 
 def describe_outcome(choice: BudgetChoice, name: str) -> str:
-    """Says whether a budget is held, and by which setting."""
+    """Returns whether a budget is held, and by which setting."""
     budget = f"{choice.budget_us:g} µs"
     trial = choice.trial
     if choice.is_scene and choice.holds:
@@ -228,7 +218,7 @@ def describe_outcome(choice: BudgetChoice, name: str) -> str:
 
 
 def describe_sacrifices(choice: BudgetChoice, scene: Scene) -> list[str]:
-    """Describes each knob that was turned: its old and new value, and the error.
+    """Describes each changed knob: its old and new value, and the error.
 
     Returns:
         A sentence for each knob, and one for all together if there are several.
@@ -248,7 +238,7 @@ def describe_file(choice: BudgetChoice, scene: Scene, name: str) -> list[str]:
 
 
 def describe_help(choice: BudgetChoice) -> list[str]:
-    """Says what would help if no setting does."""
+    """Returns what would help if no setting does."""
     return [
         "Most of such a tick is Drake and Python round the core: `drake-haptics run"
         " SCENE --explain` shows the parts. The simulated arm alone is about half; a"
@@ -318,7 +308,7 @@ def _describe_errors(errors: Errors) -> str:
 
 
 def _read(scene: Scene, key: str) -> list[Any]:
-    """Returns the different values of a key, of all objects for one of theirs."""
+    """Returns the distinct values of a key, over all objects for one of theirs."""
     items: list[Any] = [scene]
     path = key
     if key.startswith(_EACH_OBJECT):
@@ -333,7 +323,7 @@ def _read(scene: Scene, key: str) -> list[Any]:
 
 
 def _format(value: Any) -> str:
-    """Returns a value, or several, as a scene file has them."""
+    """Returns one or more values as in a scene file."""
     if isinstance(value, list):
         return " or ".join(map(_format, value))
     if value is None:

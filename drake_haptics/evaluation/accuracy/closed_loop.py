@@ -14,7 +14,7 @@ from drake_haptics.simulation.run import RunError, run
 
 # Account of the whole loop; all other accounts are its parts.
 _WHOLE = "device"
-# The linearization's own message is about systems, this one about the scene.
+# The linearization's message would be about systems.
 _TWO_RATES = "the query has another rate than the loop, and a linear map has one rate"
 # Stiffnesses are searched within this factor of the scene's, to this relative error.
 _RANGE = 1e4
@@ -23,13 +23,9 @@ _TOLERANCE = 1e-2
 
 @dataclass(frozen=True)
 class PressedPlace:
-    """The place where a scene's hand stops, or why it stops nowhere.
+    """The time on its path at which a scene's hand stops, or why it does not.
 
-    Attributes:
-        time_s: Time on its path at which it stops, s; None if the tool rests nowhere.
-        near_N_per_m: The scene's own largest stable stiffness there, from which those
-            of other settings are not far, N/m.
-        failure_reason: Reason why the hand stops nowhere; empty if it stops.
+    The scene's largest stable stiffness there is near those of other settings.
     """
 
     time_s: float | None
@@ -39,12 +35,9 @@ class PressedPlace:
 
 @dataclass(frozen=True)
 class StableStiffness:
-    """The largest stable stiffness of a coupling, or why it is not known.
+    """The largest stable stiffness of a coupling, or why it is unknown.
 
-    Attributes:
-        stiffness_N_per_m: Largest stable stiffness, N/m; infinite if there is no limit,
-            None if it is not known.
-        failure_reason: Reason why it is not known; empty if it is known.
+    It is infinite if there is no limit.
     """
 
     stiffness_N_per_m: float | None
@@ -54,10 +47,10 @@ class StableStiffness:
 def measure_created_energy(scene: Scene, duration_s: float) -> float:
     """Returns the energy that a scene's loop creates in a run, J.
 
-    It is the sum of the energies that the parts of the loop have created, as an
-    `EnergyLedger` accounts for them. Energy that the sampling of forces explains is
-    included, because a slower rate creates more of it; the account of the whole loop is
-    not, because there dampers hide what another part creates.
+    It is the sum of the energies that the parts of the loop have created, from an
+    `EnergyLedger`. Energy that the sampling of forces explains is included, because a
+    slower rate creates more of it; the account of the whole loop is not, because in it
+    dampers hide what another part creates.
 
     Returns:
         Energy, J; infinite if the loop diverges.
@@ -77,7 +70,7 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
 
 
 def find_pressed_place(scene: Scene) -> PressedPlace:
-    """Returns the place where a scene's tool is pressed most and comes to rest."""
+    """Returns the place where a scene's tool is pressed hardest and comes to rest."""
     try:
         held = hold_scene(scene)
         limit = _find_limit(scene, held, scene.coupling.stiffness_N_per_m)
@@ -87,7 +80,7 @@ def find_pressed_place(scene: Scene) -> PressedPlace:
 
 
 def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
-    """Finds the largest stable stiffness of a coupling, held against its contact.
+    """Finds the largest stable stiffness of a coupling with its tool held in contact.
 
     It is the translational one at which an eigenvalue of one tick reaches magnitude 1.
     """
@@ -117,7 +110,7 @@ def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
         try:
             return analyze_held_scene(held, coupling).growth
         except ValueError as error:
-            # If lower stiffnesses are stable, the search ends here: this is the limit.
+            # If lower stiffnesses are stable, this ends the search as the limit.
             reasons.append(str(error))
             return math.nan
 

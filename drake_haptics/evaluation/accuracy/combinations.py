@@ -14,7 +14,7 @@ from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import check_values
 
-# Another rate, device or hand does not make a tick cheaper; passivity is for safety.
+# Rate, device and hand do not make a tick cheaper, and passivity is for safety.
 _NEVER = ("device.", "coupling.", "hand.", "effects.passivity")
 # Savings below this share of the scene's tick are within the scatter of runs.
 _LEAST_SAVING = 0.02
@@ -22,12 +22,9 @@ _LEAST_SAVING = 0.02
 
 @dataclass(frozen=True)
 class Combination:
-    """Settings of several knobs at once.
+    """Rows of several knobs, in the order of their choice.
 
-    Attributes:
-        rows: Rows, one for each knob that is turned, in the order of their choice.
-        p99_us: Estimated 99th percentile of the tick, µs: the scene's less the sum of
-            the rows' savings.
+    The 99th percentile of the tick is estimated as the scene's minus the rows' savings.
     """
 
     rows: tuple[Row, ...]
@@ -48,12 +45,12 @@ def list_combinations(study: AccuracyStudy, scene: Scene) -> list[Combination]:
     percentile: the greedy solution of a knapsack problem with a choice from each knob.
     Effects that the scene names go last, after all settings of accuracy.
 
-    Settings of device, coupling, hand and passivity control are never taken. Neither
-    are those that diverge, that make the scene's coupling unstable, or whose force is
-    off by more than the device can show.
+    Settings of device, coupling, hand and passivity control are never used, nor are
+    those that diverge, that make the scene's coupling unstable, or whose force error
+    exceeds what the device can show.
 
     Raises:
-        ValueError: The study has no figures of the scene as it is.
+        ValueError: The study has no figures of the unchanged scene.
     """
     start = next((r for r in study.rows if r.is_scene and r.cost and r.errors), None)
     if start is None:
@@ -75,7 +72,7 @@ def merge_changes(rows: Iterable[Row]) -> dict[str, Any]:
 
 
 def _find_allowed(rows: Iterable[Row], scene: Scene) -> Iterator[Row]:
-    """Yields the rows that may be taken."""
+    """Yields the rows that may be used."""
     max_force_N = find_device_site(scene).max_force_N
     for row in rows:
         if row.cost is None or row.errors is None or row.is_scene:
@@ -122,7 +119,7 @@ def _turn(chosen: tuple[Row, ...], row: Row) -> tuple[Row, ...]:
 
 
 def _fits(rows: tuple[Row, ...], scene: Scene) -> bool:
-    """Tells whether no row undoes another's change and they make a valid scene."""
+    """Returns whether rows do not conflict and make a valid scene."""
     changes = merge_changes(rows)
     if any(changes[k] != v for row in rows for k, v in row.setting.changes.items()):
         return False

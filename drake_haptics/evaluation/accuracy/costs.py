@@ -32,27 +32,27 @@ from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.contact.contact_query import DepthSearch
 
-# A diagram with Python systems is never freed: keeping it here costs nothing, and
-# building another one for the next measurement of the scene would.
+# A diagram with Python systems is never freed, so keep it for the scene's next
+# measurement.
 _BUILT: dict[str, HapticDiagram] = {}
-# Number of passes that time each tick; but no pass begins later than this, s.
+# Number of passes that time each tick, and latest start of a pass, s.
 _PASSES = 3
 _LONGEST_S = 1.0
 # Distance at which nothing touches the tool, m.
 _FAR_M = 1e3
-# A scene runs this long before the next one takes its turn, s.
+# Duration of a turn of a scene, s.
 _PART_S = 0.25
-# A longer lap is cut.
+# Longest part of a lap, s.
 _LONGEST_LAP_S = 5.0
 
 
 def cached_build(scene: Scene) -> HapticDiagram:
     """Returns the diagram of a scene, the same one for the same scene.
 
-    A run changes nothing but its context, so that runs do not affect each other. A mesh
-    file that changes meanwhile is not read again.
+    A run only changes its context, so that runs are independent. Changed mesh files are
+    not read again.
     """
-    key = repr(asdict(scene))  # all of it: a scene's own repr is a line
+    key = repr(asdict(scene))  # complete, unlike a scene's repr
     if key not in _BUILT:
         _BUILT[key] = build_without_scene_warnings(scene)
     return _BUILT[key]
@@ -61,9 +61,9 @@ def cached_build(scene: Scene) -> HapticDiagram:
 def time_in_turns(scenes: Sequence[Scene], duration_s: float) -> list[TickTimes]:
     """Runs scenes in real time, in turns of a quarter of a second; returns their times.
 
-    Between two ticks the processor rests and other programs use its caches, so that a
-    tick takes longer than in a loop that never waits. A disturbance of the machine
-    affects all scenes alike, so that the ratios of their times hold.
+    Between ticks the processor rests and other programs use its caches, so that a tick
+    takes longer than in a loop that never waits. Disturbances of the machine affect all
+    scenes alike, so that the ratios of their times are reliable.
 
     Raises:
         RunError: A loop diverges.
@@ -99,7 +99,7 @@ def _run_in_parts(
 
     def end_tick(root: Context) -> bool:
         nonlocal context
-        # This tick is counted already.
+        # This tick is already counted.
         is_end = statistics.ticks in (total, part_end)
         if is_end:
             context = root.Clone()
@@ -114,11 +114,11 @@ def _run_in_parts(
 
 
 def scale_times(times: TickTimes, ours: TickTimes, other: TickTimes) -> TickTimes:
-    """Returns others' times, had the machine run ours as fast as in `times`.
+    """Returns others' times as if the machine had run ours as fast as in `times`.
 
-    How fast the machine runs is one number, so that the percentiles keep their order:
-    the ratio of the medians, or of the lowest percentile of ours that the clock shows.
-    Others beside which it shows nothing stay as they are.
+    The speed of the machine is one factor, so that percentiles keep their order: the
+    ratio of the medians, or of our lowest percentile that the clock resolves. If it
+    resolves none, the others are unchanged.
     """
     shown = [
         (time_us, our_us)
@@ -133,17 +133,17 @@ def scale_times(times: TickTimes, ours: TickTimes, other: TickTimes) -> TickTime
 def combine(repeats: Sequence[TickTimes]) -> TickTimes:
     """Returns the median of each figure over several runs.
 
-    Each run has its own percentiles, which include interruptions by the system as a
-    user's do; the median drops a run that something else disturbed.
+    The percentiles of each run include interruptions by the system, as for a user; the
+    median drops a disturbed run.
     """
     ticks, *times_us = np.median([astuple(r) for r in repeats], axis=0).tolist()
     return TickTimes(int(ticks), *times_us)
 
 
 def make_native_part(haptic: HapticDiagram) -> NativePart:
-    """Returns the queries of a scene's systems to the core.
+    """Returns the calls of a scene's systems to the core.
 
-    Effects are not included; work that a loop may leave out under load is included.
+    Effects are not included; work that a loop may drop under load is.
     """
     scene, effects = haptic.scene, haptic.scene.effects
     contact, items = scene.contact, scene.environment
@@ -179,8 +179,8 @@ def time_native(
 ) -> list[TickTimes]:
     """Times query, clusters and wrench of recorded motions, without Python, in turns.
 
-    A tick's time is that of the middle of several passes, so that the percentiles are
-    free of disturbances.
+    The time of a tick is the mean of the middle half of several passes, without
+    disturbances.
     """
     passes: list[list[np.ndarray]] = [[] for _ in parts]
     begin_s = time.perf_counter()
@@ -196,7 +196,7 @@ def _time_pass(part: NativePart, motion: RecordedMotion) -> np.ndarray:
     """Returns the times (n,) of the ticks of a motion, s.
 
     The query is timed inside the core; extrapolation, clusters and wrench are timed by
-    how much longer a call takes than one without contacts.
+    the difference to a call without contacts.
     """
     far = np.array([1.0, 0.0, 0.0, 0.0, _FAR_M, 0.0, 0.0])
     nothing, _ = part.make_search().look(far)

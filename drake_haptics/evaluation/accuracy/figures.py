@@ -1,4 +1,4 @@
-"""Holds the price list: the cost and the error of each setting of a scene."""
+"""Represents a study: the cost and the error of each setting of a scene."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from drake_haptics.report.plain_data import (
     to_plain_data,
 )
 
-# Reason for an unknown stiffness that was not asked for.
+# Reason for an unknown stiffness that was not requested.
 NOT_SOUGHT = "not sought"
 
 
 @dataclass(frozen=True)
 class Cost:
-    """The time that a setting costs.
+    """The time that a setting takes.
 
     Attributes:
         tick: Times of whole ticks of the loop, paced by the clock.
@@ -69,15 +69,10 @@ class Errors:
 
 @dataclass(frozen=True)
 class Row:
-    """One setting's price and error.
+    """The cost and error of one setting; None if they could not be measured.
 
-    Attributes:
-        setting: Setting of the row.
-        is_scene: Whether this is the scene as it is.
-        cost: Time of the setting; None if it could not be measured.
-        errors: Errors of the setting; None if they could not be measured.
-        pieces: Convex pieces of the tool and of all objects.
-        failure_reason: Reason why it could not be measured, empty otherwise.
+    Pieces are convex pieces of the tool and of all objects. The unchanged scene is also
+    a setting.
     """
 
     setting: Setting
@@ -90,15 +85,10 @@ class Row:
 
 @dataclass(frozen=True)
 class PeerRow:
-    """Another way to the contact wrench, on the same motion.
+    """Another library's contact wrench on the same motion.
 
-    Attributes:
-        library: Name and version of the library.
-        method: Description of its query.
-        native: Time inside the library per tick; None if it could not be measured.
-        errors: Errors as in a `Row`, without energy and stiffness (NaN, None); None if
-            they could not be measured.
-        failure_reason: Reason why there are no figures, empty otherwise.
+    Figures are None if they could not be measured. Times are those inside the library
+    per tick; errors lack energy and stiffness (NaN, None).
     """
 
     library: str
@@ -113,15 +103,12 @@ class AccuracyStudy:
     """All rows of a scene.
 
     Attributes:
-        scene: Name of the scene.
-        description: Description of the scene.
-        machine: Machine that took the times, see
-            `drake_haptics.evaluation.measuring.timing.describe_machine`.
+        machine: Machine of the times; see `describe_machine`.
         ticks: Ticks of the recorded motion.
         contact_ticks: Ticks of the motion with a contact.
-        reference: Setting that the wrench is compared with, the finest exact one.
+        reference: Setting with which wrenches are compared, the finest exact one.
         rows: Rows of each knob, its settings in order; the scene as it is first.
-        peers: Rows of other libraries on the same motion. Defaults to empty.
+        peers: Rows of other libraries on the same motion.
     """
 
     scene: str
@@ -147,8 +134,8 @@ class AccuracyStudy:
     def to_json_data(self) -> dict[str, Any]:
         """Returns the study as data for `json.dumps(allow_nan=False)`.
 
-        Infinite numbers are the text "infinite", and NaN is "none"; a null is a figure
-        that was not sought.
+        Infinite numbers are the text "infinite", NaN is "none", and figures that were
+        not sought are null.
         """
         return to_plain_data(self, name_number)
 

@@ -25,7 +25,7 @@ _CLUSTERS = (1.0, 4.0, 16.0)
 _WALK_STEPS = (1, 2, 4, 16, 1024)
 _QUERY_EVERY = (2, 4, 10)
 _RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
-# No tick is so short: after some 150 ticks all optional work is left out.
+# No tick is that short, so after some 150 ticks all optional work is dropped.
 _BUDGET_WORDS = {1.0: "1 µs: all left out that may be"}
 # Effect -> the key of a material that belongs to it.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
@@ -40,12 +40,12 @@ _EFFECTS = ("shading", "friction", "braking", "gravity", "passivity")
 
 
 def _with_own(values: Iterable[Number], own: Number | None) -> list[Number]:
-    """Returns numbers and the scene's own, if it has one, the smallest first."""
+    """Returns sorted numbers that include the scene's, if it has one."""
     return sorted(set(values).union([] if own is None else [own]))
 
 
 def _format_length(length_m: float) -> str:
-    """Returns a length in mm, in few digits."""
+    """Returns a length in mm with few digits."""
     return f"{1e3 * length_m:.3g} mm"
 
 
@@ -56,15 +56,9 @@ def _list_numbers(
     name: Callable[[Number], str],
     off: str | None = None,
 ) -> list[Setting]:
-    """Returns a setting for each number and the scene's own, the largest first.
+    """Returns a setting for each number and the scene's, largest first.
 
-    Args:
-        key: Key that they set.
-        values: The numbers.
-        own: The scene's own number, if it has one.
-        name: Function that returns the label of a number.
-        off: Label of the setting without a number, which comes first. Defaults to no
-            such setting.
+    If there is a label `off`, the setting without a number comes before them.
     """
     without = [] if off is None else [Setting(key, off, {key: None})]
     numbers = reversed(_with_own(values, own))
@@ -122,7 +116,7 @@ def list_effect(scene: Scene, name: str) -> list[Setting]:
 
 
 def list_query_rates(scene: Scene) -> list[Setting]:
-    """Returns rates of the contact query, that of every tick first."""
+    """Returns rates of the contact query, beginning with every tick."""
     rates = [scene.device.rate_hz / every for every in _QUERY_EVERY]
     key, own_hz = "contact.query_rate_hz", scene.contact.query_rate_hz
     return _list_numbers(key, rates, own_hz, "{:g} Hz".format, "every tick")
@@ -135,9 +129,9 @@ def list_rates(scene: Scene) -> list[Setting]:
 
 
 def list_budgets(scene: Scene) -> list[Setting]:
-    """Returns the budget that leaves nothing out, and that which leaves out all it may.
+    """Returns a budget that drops nothing, and one that drops all optional work.
 
-    A budget between them depends on the machine and the moment: it has no figures.
+    Budgets in between depend on the machine and the moment, and have no figures.
     """
     return _list_numbers(
         "device.tick_budget_us",
@@ -155,9 +149,7 @@ def _find_length(scene: Scene) -> float:
 def list_decompositions(scene: Scene, where: str) -> list[Setting]:
     """Returns the ways to cut a mesh that are installed.
 
-    Args:
-        scene: Scene with the meshes.
-        where: Part of the scene: `tool`, or `environment` for all objects.
+    The part of the scene is `tool`, or `environment` for all objects.
     """
     key, error = f"{where}.decomposition", f"{where}.decomposition_error_m"
     words = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
@@ -174,7 +166,7 @@ def list_decompositions(scene: Scene, where: str) -> list[Setting]:
 
 
 def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
-    """Returns decimations of meshes that have triangles to spare."""
+    """Returns decimations of meshes with many triangles."""
     key = f"{where}.max_triangles"
     largest = max(_count_triangles(part) for part in _find_parts(scene, where))
     counts = [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES]
@@ -187,7 +179,7 @@ def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
     """Returns chord errors of round shapes, if there are any."""
     key, own_m = f"{where}.chord_error_m", _find_own(scene, where, "chord_error_m")
     parts = _find_parts(scene, where)
-    # Triangle meshes have no round shapes, and no such key.
+    # Triangle meshes have no such key.
     if not all(is_model_file(part.mesh) for part in parts):
         return []
     if not any(_is_round(part) for part in parts):
@@ -222,19 +214,16 @@ def _count_triangles(
 
 
 def _is_round(part: Tool | EnvironmentObject) -> bool:
-    """Tells whether a part has shapes that a finer polytope follows better."""
+    """Returns whether a part has round shapes."""
     fine, coarse = (_count_triangles(part, _CHORDS_M[i]) for i in (0, -1))
     return fine > coarse
 
 
 @dataclass(frozen=True)
 class Knob:
-    """Keys of a scene that trade accuracy for time together.
+    """Keys of a scene that together trade accuracy for time.
 
-    Attributes:
-        keys: Keys of the scene that it sets.
-        list_settings: Function that lists its settings for a scene, from accurate to
-            fast. The one that the scene has is among them.
+    Its settings for a scene are listed from accurate to fast, including the scene's.
     """
 
     keys: tuple[str, ...]
@@ -242,7 +231,7 @@ class Knob:
 
 
 def list_settings(scene: Scene) -> tuple[Setting, ...]:
-    """Returns the scene as it is, and then all settings of each knob in their order."""
+    """Returns the unchanged scene, and then all settings of each knob in order."""
     settings = [AS_IT_IS]
     for knob in KNOBS:
         settings += knob.list_settings(scene)
@@ -250,7 +239,7 @@ def list_settings(scene: Scene) -> tuple[Setting, ...]:
 
 
 def list_few_settings(scene: Scene) -> tuple[Setting, ...]:
-    """Returns the scene as it is, and each knob's fastest setting that changes it."""
+    """Returns the unchanged scene, and the fastest setting of each knob."""
     fastest = {
         setting.knob: setting
         for setting in list_settings(scene)
@@ -260,9 +249,9 @@ def list_few_settings(scene: Scene) -> tuple[Setting, ...]:
 
 
 def make_reference(scene: Scene) -> Setting:
-    """Returns the finest exact setting, which wrenches are compared with.
+    """Returns the finest exact setting, with which wrenches are compared.
 
-    Tolerance, gains, effects and the kind of depth stay the scene's.
+    Tolerance, gains, effects and the kind of depth are those of the scene.
     """
     changes: dict[str, Any] = {}
     for where in ("tool", "environment"):
@@ -270,23 +259,18 @@ def make_reference(scene: Scene) -> Setting:
         changes[f"{where}.decomposition_error_m"] = None
         changes[f"{where}.max_triangles"] = None
         chords = list_chord_errors(scene, where)
-        # The finest comes first.
+        # The finest is first.
         changes.update(chords[0].changes if chords else {})
     return Setting("reference", "all triangles in exact pieces, every tick", changes)
-
-
-def _mesh_knob(
-    where: str, names: tuple[str, ...], list_some: Callable[[Scene, str], list[Setting]]
-) -> Knob:
-    keys = tuple(f"{where}.{name}" for name in names)
-    return Knob(keys, lambda scene: list_some(scene, where))
 
 
 KNOBS: tuple[Knob, ...] = (
     Knob(("contact.depth",), list_depths),
     Knob(("contact.max_walk_steps",), list_walk_steps),
     *(
-        _mesh_knob(where, names, list_some)
+        Knob(
+            tuple(f"{where}.{name}" for name in names), partial(list_some, where=where)
+        )
         for names, list_some in (
             (("decomposition", "decomposition_error_m"), list_decompositions),
             (("max_triangles",), list_triangle_counts),

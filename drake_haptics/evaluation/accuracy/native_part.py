@@ -1,7 +1,7 @@
 """Runs the part of a tick that is inside the core, and counts its instructions.
 
 `python -m drake_haptics.evaluation.accuracy.native_part FILE` is the program that is
-counted: it moves the tool as FILE says.
+counted; it moves the tool along the motion in FILE.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ _FAR_M = 1e3
 
 @dataclass(frozen=True, eq=False)
 class NativePart:
-    """The queries to the core in each tick, without Drake; they can be pickled.
+    """The calls to the core in each tick, without Drake; they can be pickled.
 
     Attributes:
         tool: Pieces of the tool.
         objects: Pieces of each object.
         X_WO: (m, 7) poses [qw qx qy qz x y z] of the objects, m.
         search_m: Distance up to which contacts are found, m.
-        depth: Kind of depth of two pieces in overlap, see `SceneTracker`.
-        max_walk_steps: Bound of the walk to a depth, see `SceneTracker`.
+        depth: Kind of depth of two overlapping pieces; see `SceneTracker`.
+        max_walk_steps: Bound of the walk to a depth; see `SceneTracker`.
         query_every: Number of ticks from one contact query to the next, between which
-            contacts are extrapolated; None if every tick has a query of its own.
+            contacts are extrapolated; None if every tick has a query.
         tolerance_m: Distance up to which contacts push, m.
         cluster_size_m: δ of the octree, m; None if contacts share stiffness.
         stiffness_N_per_m: (m,) stiffness of each object, N/m.
@@ -80,7 +80,7 @@ class NativePart:
 
 
 class ContactSearch:
-    """Looks for contacts tick by tick, as the systems of a loop do."""
+    """Searches for contacts tick by tick, like the systems of a loop."""
 
     def __init__(self, part: NativePart):
         """Begins before the first tick."""
@@ -98,13 +98,14 @@ class ContactSearch:
         self._found: _core.ContactSet | None = None
 
     def look(self, X_WT: np.ndarray) -> tuple[_core.ContactSet, float]:
-        """Looks for contacts if this tick has a query.
+        """Searches for contacts if this tick has a query.
 
         Args:
             X_WT: (7,) pose of the tool at the next tick.
 
         Returns:
-            Contacts of the last query, and the time of this one in the core, s.
+            Contacts of the last query, and the time of this tick's query in the core,
+            s.
         """
         if self._every is None:
             found = self._tracker.query(X_WT)
@@ -113,7 +114,7 @@ class ContactSearch:
         self._tick += 1
         if tick == 0:
             self._sample = X_WT
-        # Contacts of a pose that is sampled at a tick are known from the next one on.
+        # Contacts of a pose that is sampled at a tick are available at the next one.
         if self._found is None or (tick - 1) % self._every == 0:
             self._found_at = self._sample
             self._found = self._tracker.query(self._found_at)
@@ -123,26 +124,18 @@ class ContactSearch:
         return self._found, query_s
 
     def carry(self, found: _core.ContactSet, X_WT: np.ndarray) -> _core.ContactSet:
-        """Returns contacts that were found, extrapolated to the tool's pose."""
+        """Returns found contacts, extrapolated to the tool's pose."""
         if self._every is None:
             return found
         return self._carrier.advance(found, self._found_at, X_WT)
 
 
 def count_native(part: NativePart, X_WT: np.ndarray, V_WT: np.ndarray) -> float:
-    """Returns the number of instructions of query, clusters and wrench in a tick.
+    """Returns the mean number of instructions of query, clusters and wrench in a tick.
 
-    The count of the same calls far from all objects is subtracted: Python, the binding
-    and the start of the program. The first tick, which finds the first contacts, is
-    included.
-
-    Args:
-        part: Queries to the core.
-        X_WT: (n, 7) poses of the tool.
-        V_WT: (n, 6) spatial velocities of the tool.
-
-    Returns:
-        Mean over all ticks.
+    The tool has n poses (n, 7) and velocities (n, 6). The count of the same calls far
+    from all objects is subtracted: that of Python, the binding and the start of the
+    program. The first tick, which finds the first contacts, is included.
 
     Raises:
         subprocess.CalledProcessError: The program failed.
@@ -154,7 +147,7 @@ def count_native(part: NativePart, X_WT: np.ndarray, V_WT: np.ndarray) -> float:
 
 
 def main() -> None:
-    """Moves the tool as a file says, counted."""
+    """Moves the tool along the motion in a file, counting."""
     part, X_WT, V_WT = read_data()
     search, cluster = part.make_search(), part.make_clustering()
     force = part.make_force()

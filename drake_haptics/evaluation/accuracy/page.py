@@ -1,4 +1,4 @@
-"""Writes the study of a scene as one page that any browser shows."""
+"""Writes the study of a scene as an HTML page."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ _PEER_COLUMNS = (
 
 
 def write_accuracy_page(study: AccuracyStudy, path: Path, command: str) -> None:
-    """Writes the page as one HTML file, and its picture beside it as PNG.
+    """Writes the page as one HTML file, and its picture as a PNG file next to it.
 
     Args:
         study: Study to show.
         path: Path of the HTML file; the picture has the suffix `.png` instead.
-        command: Command line that measured the study. The page shows it to measure
-            rows again, on the same motion.
+        command: Command line that measured the study, which the page shows for
+            measuring rows again.
 
     Raises:
         ValueError: The path has the picture's suffix.
@@ -96,7 +96,7 @@ def write_accuracy_page(study: AccuracyStudy, path: Path, command: str) -> None:
 def _make_groups(
     study: AccuracyStudy, columns: tuple[Column, ...]
 ) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    """Yields each knob with its rows of the price list."""
+    """Yields each knob with its rows."""
     measured = [row for row in study.rows if row.cost and row.errors]
     slowest_us = max(map(get_native_us, measured), default=1.0)
     worst_N = max(map(get_force_error_N, measured), default=ERROR_FLOOR_N)
@@ -119,7 +119,7 @@ def _make_groups(
 def _find_bars(
     row: Row, slowest_us: float, worst_N: float
 ) -> Iterator[tuple[str, tuple[str, float]]]:
-    """Yields columns with the kind of their bar and its share of the longest."""
+    """Yields columns with the kind and relative length of their bars."""
     if row.cost is None or row.errors is None:
         return
     yield "core", ("time", get_native_us(row) / slowest_us)

@@ -1,4 +1,4 @@
-"""Finds the settings that are worth their time: the front of a study, and its knees."""
+"""Finds the Pareto front of a study, and its knees."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
 from drake_haptics.evaluation.accuracy.setting import is_comparable
 
-# Smaller errors count as equal: nobody feels so little.
+# Smaller errors cannot be felt and count as equal.
 ERROR_FLOOR_N = 1e-3
-# A knee lies this far below its chord, in a front that fills a square of side 1.
+# Least distance of a knee below its chord, in a front scaled to a unit square.
 _LEAST_DEPTH = 0.1
-# A front whose times differ by less has no knee: runs of one setting differ as much.
+# A front whose times differ by less, as runs of one setting do, has no knee.
 _LEAST_SPAN = 1.05
 
 
@@ -22,10 +22,10 @@ class Front:
     """The settings that no other one beats in both time and error.
 
     Attributes:
-        rows: Measured rows, the cheapest and so least accurate first.
+        rows: Measured rows, cheapest and least accurate first.
         knees: Rows beyond which accuracy becomes expensive, in the same order.
         bend: Row where the front bends most towards the corner, which is the first knee
-            if there is one; None where `find_bend` returns None.
+            if there is one; None if `find_bend` returns None.
     """
 
     rows: tuple[Row, ...]
@@ -81,7 +81,7 @@ def find_front_points(points: Sequence[tuple[float, float]]) -> list[int]:
     """Returns the indices of the points that no other one beats, by time.
 
     Args:
-        points: Times and errors, in any unit. Of equal points the first one counts.
+        points: Times and errors, in any unit. The first of equal points is returned.
     """
     front: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: (*points[i], i)):
@@ -96,8 +96,8 @@ def find_knee_points(front: Sequence[tuple[float, float]]) -> list[int]:
     Time is linear and error logarithmic, to show what a tenth of the error costs. The
     front is scaled to a square of side 1. The first knee is the point farthest below
     the straight line between the ends (Satopää et al. 2011), if it is at least a tenth
-    below; further ones are found alike on either side of it (Douglas and Peucker 1973).
-    The units of the axes do not matter.
+    below; further ones are found likewise on each side of it (Douglas and Peucker
+    1973). The units of the axes do not matter.
 
     Args:
         front: Positive times and errors, time rising and error falling.

@@ -36,14 +36,14 @@ if TYPE_CHECKING:
 _SIZE_INCH = (13.0, 9.0)
 _MARKERS = "osD^vP<>Xhpd8"
 _PALE = 0.5
-# The axis of errors ends this factor beyond the points, so that labels have room.
+# Factor by which the axis of errors exceeds the points, for labels.
 _MARGIN_ERROR = 2.0
 
 
 def draw_study(study: AccuracyStudy) -> Figure:
-    """Draws a study on a figure of its own, which no window shows.
+    """Draws a study on a new figure, without a window.
 
-    Time is that inside the core, which other libraries have too. Rows that were not
+    Times are those inside the core, which other libraries also have. Rows that were not
     measured are left out.
     """
     from matplotlib.figure import Figure
@@ -65,7 +65,7 @@ def draw_study(study: AccuracyStudy) -> Figure:
         " and left out of the front: no error, but another model or loop."
         f" {describe_machine(study)}",
     )
-    figure.draw_without_rendering()  # fixes the layout, which labels are placed in
+    figure.draw_without_rendering()  # fixes the layout for labels
     front = find_front(study)
     marked = [
         row
@@ -85,7 +85,7 @@ def draw_study(study: AccuracyStudy) -> Figure:
 
 
 def _label_setting(row: Row, is_knee: bool) -> Label:
-    """Returns the label of a setting that is worth a look."""
+    """Returns the label of a notable setting."""
     words = _describe_setting(row, is_knee)
     error_N = get_force_error_N(row)
     return Label(get_native_us(row), error_N, words, FRONT, is_framed=True)
@@ -104,11 +104,11 @@ def _label_knob(knob: _Knob, axes: Axes) -> Label:
 
 @dataclass(frozen=True)
 class _Knob:
-    """A knob as it is drawn.
+    """A knob in the plot.
 
     Attributes:
         name: Name of the knob.
-        rows: Rows that were measured; at least one is not the scene as it is.
+        rows: Measured rows, at least one of which is not the unchanged scene.
         marker: Marker of its points, a name of Matplotlib's.
         color: Color of its points, one for all knobs whose figures are not errors.
         alpha: Opacity of its points, lower for those knobs.
@@ -135,7 +135,7 @@ def _find_knobs(study: AccuracyStudy) -> list[_Knob]:
 
 
 def _draw_rows(study: AccuracyStudy, axes: Axes) -> None:
-    """Draws every row, the front behind them and the scene's own star above them."""
+    """Draws all rows, the front behind them and the scene as a star above them."""
     axes.set_yscale("log")
     for knob in _find_knobs(study):
         points = [(get_native_us(row), get_force_error_N(row)) for row in knob.rows]
@@ -186,7 +186,7 @@ def _take_scene(study: AccuracyStudy) -> list[Row]:
 
 
 def _take_reference(study: AccuracyStudy) -> list[Row]:
-    """Returns the reference's own row, if it is one of the rows."""
+    """Returns the reference's row, if it is one of the rows."""
     return [
         row
         for row in study.rows
@@ -223,7 +223,7 @@ def _name_peer(peer: PeerRow) -> str:
 
 
 def _describe_setting(row: Row, is_knee: bool) -> str:
-    """Returns the words of a setting that is worth a look."""
+    """Returns the text for a notable setting."""
     assert row.errors is not None
     knob = f"knee: {row.setting.knob}" if is_knee else row.setting.knob
     return f"{knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"

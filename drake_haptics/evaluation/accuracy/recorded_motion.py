@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from pydrake.systems.framework import Context
+from pydrake.systems.framework import Context, OutputPort
 
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
-from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.schema import Scene
@@ -53,11 +52,10 @@ class RecordedMotion:
         return self.period_s * np.arange(len(self))
 
     def find_ticks(self, period_s: float) -> list[tuple[int, int]]:
-        """Returns the ticks of a loop that fall on this motion.
+        """Returns the rows of this motion at which a loop has new ticks.
 
         Returns:
-            Each row at which the loop has a new tick, with the number of its last tick
-            up to that row.
+            Each such row, with the number of the loop's last tick up to it.
         """
         numbers = (self.times_s / period_s + _SAME_TICK).astype(int)
         rows = np.flatnonzero(np.diff(numbers, prepend=-1))
@@ -69,7 +67,7 @@ class RecordedMotion:
         return self._take(rows, max(period_s, self.period_s))
 
     def cut(self, first: int, end: int) -> RecordedMotion:
-        """Returns the rows from the first to the one before the end."""
+        """Returns the rows from `first` up to, but not including, `end`."""
         return self._take(list(range(first, end)), self.period_s)
 
     def _take(self, rows: list[int], period_s: float) -> RecordedMotion:
@@ -80,8 +78,8 @@ class RecordedMotion:
 def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:
     """Returns the time of one lap of the hand's path, at most `longest_s`, s.
 
-    Some thousand ticks show what a setting does. If the hand does not move, the tool
-    comes to rest in them.
+    Some thousand ticks show the effect of a setting. If the hand does not move, the
+    tool comes to rest meanwhile.
     """
     return min(make_hand_path(scene.hand.path).duration_s or longest_s, longest_s)
 
@@ -95,7 +93,7 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
 
     Raises:
         SceneError: The scene cannot be built.
-        MeshError: A mesh cannot be treated.
+        MeshError: A mesh cannot be used.
         drake_haptics.simulation.run.RunError: The loop diverges.
         KeyboardInterrupt: Ctrl-C is pressed.
     """
@@ -135,61 +133,17 @@ class ToolReplay:
     distance: np.ndarray
 
 
-@dataclass(frozen=True)
-class ReplayedTick:
-    """A tick of a scene at which its tool is where a motion has it.
-
-    Attributes:
-        row: Row of the motion.
-        haptic: Diagram of the scene.
-        root: Context of the diagram, to be read.
-    """
-
-    row: int
-    haptic: HapticDiagram
-    root: Context
-
-
 def replay_tool(scene: Scene, motion: RecordedMotion) -> ToolReplay:
     """Returns the wrenches of a scene's contacts when its tool moves as recorded.
 
-    The loop is open: a wrong wrench does not change the motion. At a row of the motion
-    at which the scene has no tick, the last wrench holds, as in the loop.
+    All systems work as in a run, but the tool's state is set before each tick, so that
+    the loop is open and a wrong wrench does not change the motion. At a row of the
+    motion without a tick of the scene, the last wrench is held, as in the loop.
 
     Raises:
         SceneError: The scene cannot be built.
-        MeshError: A mesh cannot be treated.
+        MeshError: A mesh cannot be used.
     """
-    F_To_W = np.zeros((len(motion), 6))
-    distance = np.full(len(motion), np.inf)
-    for tick in walk_tool(scene, motion):
-        # All rows up to the scene's next tick.
-        F_To_W[tick.row :] = _read_wrench(tick)
-        distance[tick.row :] = _read_distance(tick, scene.contact.tolerance_m)
-    return ToolReplay(F_To_W, distance)
-
-
-def walk_tool(scene: Scene, motion: RecordedMotion) -> Iterator[ReplayedTick]:
-    """Yields each tick of a scene whose handle and tool move as recorded.
-
-    All systems do what they do in a run, but the tool's state is set before each tick.
-    """
-    haptic = _build(scene, motion)
-    simulator = make_simulator(haptic)
-    root = simulator.get_mutable_context()
-    tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(root)
-    states = np.hstack([motion.X_WT, motion.V_WT])
-    for row, number in motion.find_ticks(haptic.period_s):
-        if row > 0:
-            simulator.AdvanceTo(number * haptic.period_s)
-        tool.SetDiscreteState(0, states[row])
-        if row == 0:
-            simulator.Initialize()
-        yield ReplayedTick(row, haptic, root)
-
-
-def _build(scene: Scene, motion: RecordedMotion) -> HapticDiagram:
-    """Returns a scene's diagram with the handle of a recorded motion."""
     site = find_device_site(scene)
     device = HapticDevice(
         ReplayedHandle(motion.X_WH, motion.V_WH, motion.period_s),
@@ -197,22 +151,28 @@ def _build(scene: Scene, motion: RecordedMotion) -> HapticDiagram:
         max_force_N=site.max_force_N,
         max_torque_Nm=site.max_torque_Nm,
     )
-    return build_without_scene_warnings(scene, device)
+    haptic = build_without_scene_warnings(scene, device)
+    loop = haptic.loop
+    sources = [port for name, port in loop.wrench_sources.items() if name != "coupling"]
+    simulator = make_simulator(haptic)
+    root = simulator.get_mutable_context()
+    tool = loop.haptic_tool.GetMyMutableContextFromRoot(root)
+    states = np.hstack([motion.X_WT, motion.V_WT])
+    F_To_W = np.zeros((len(motion), 6))
+    distance = np.full(len(motion), np.inf)
+    for row, number in motion.find_ticks(haptic.period_s):
+        if row > 0:
+            simulator.AdvanceTo(number * haptic.period_s)
+        tool.SetDiscreteState(0, states[row])
+        if row == 0:
+            simulator.Initialize()
+        # All rows until the scene's next tick.
+        F_To_W[row:] = sum(_read(port, root)[:6] for port in sources)
+        nearest = min(_read(loop.contacts, root).distance.tolist(), default=np.inf)
+        # Braking searches farther.
+        distance[row:] = nearest if nearest < scene.contact.tolerance_m else np.inf
+    return ToolReplay(F_To_W, distance)
 
 
-def _read_wrench(tick: ReplayedTick) -> np.ndarray:
-    """Returns the wrench (6,) of all sources on the tool but the coupling."""
-    total = np.zeros(6)
-    for name, port in tick.haptic.loop.wrench_sources.items():
-        if name != "coupling":
-            context = port.get_system().GetMyContextFromRoot(tick.root)
-            total += port.Eval(context)[:6]
-    return total
-
-
-def _read_distance(tick: ReplayedTick, tolerance_m: float) -> float:
-    port = tick.haptic.loop.contacts
-    contacts = port.Eval(port.get_system().GetMyContextFromRoot(tick.root))
-    nearest = min(contacts.distance.tolist(), default=np.inf)
-    # Braking searches further.
-    return nearest if nearest < tolerance_m else np.inf
+def _read(port: OutputPort, root: Context) -> Any:
+    return port.Eval(port.get_system().GetMyContextFromRoot(root))

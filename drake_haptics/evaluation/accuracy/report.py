@@ -1,4 +1,4 @@
-"""Reports a study as cells of a price list and in sentences."""
+"""Reports a study as cells of a table and in sentences."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from drake_haptics.evaluation.accuracy.pareto import (
 from drake_haptics.evaluation.accuracy.setting import find_model_change
 from drake_haptics.evaluation.measuring.timing import TickTimes, name_machine
 
-# Marks before a label: the scene's own setting; a difference of model.
+# Marks before a label: the scene's setting, and a difference of model.
 SCENE_MARK = "*"
 MODEL_MARK = "†"
 # Smaller figures are round-off.
 _LEAST_SHOWN = {"N": 5e-4, "µm": 5e-4, "°": 0.05, "mJ": 5e-4}
-# A setting is worth a sentence if it saves this share of a tick.
+# Share of a tick that a setting must save to be mentioned.
 _WORTH = 0.1
-# A ratio this near to a simple one is written as the simple one.
+# Tolerance within which a ratio is written as a simple one.
 _ROUND = 0.05
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the price list.
+    """A column of the table.
 
     Attributes:
         head: Short heading.
@@ -73,7 +73,7 @@ INSTRUCTIONS = Column(
 
 
 def get_columns(study: AccuracyStudy) -> tuple[Column, ...]:
-    """Returns the columns that a study has figures for, without knob and setting."""
+    """Returns the columns for which a study has figures."""
     counted = any(row.cost and row.cost.instructions for row in study.rows)
     sought = not all(
         row.errors is None or row.errors.stiffness_why_not == NOT_SOUGHT
@@ -112,7 +112,7 @@ def make_error_cells(errors: Errors) -> tuple[str, str, str, str]:
 
 
 def make_label(row: Row) -> str:
-    """Returns a setting's label after its marks, which take two places."""
+    """Returns a setting's label with its two marks."""
     scene = SCENE_MARK if row.is_scene else " "
     differs = not row.is_scene and find_model_change(row.setting)
     model = MODEL_MARK if differs else " "
@@ -169,29 +169,35 @@ def name_setting(row: Row) -> str:
 
 
 def describe_verdict(study: AccuracyStudy) -> list[str]:
-    """Advises on a setting, and says what the scene costs and how wrong it is."""
+    """Returns advice on a setting, and the scene's cost and error."""
     scene = find_scene_row(study)
     if scene is None or scene.cost is None or scene.errors is None:
         return ["The scene as it is could not be measured."]
+    if study.contact_ticks == 0:
+        return [
+            f"The tool touched nothing in the {study.ticks} ticks that were measured,"
+            " so that there is no verdict: measure all of the motion, or one"
+            " that touches."
+        ]
     tick = scene.cost.tick
     wrong = scene.errors.force_rms_N
     return [
         _advise(study, scene),
         f"A tick of the scene as it is takes {format_us(tick.median_us)} µs (p99"
         f" {format_us(tick.p99_us)} µs), contact inside the core"
-        f" {format_us(scene.cost.native.median_us)} µs of it. Its force is "
+        f" {format_us(scene.cost.native.median_us)} µs of it. Its force "
         + (
-            f"the reference's to {format_N(ERROR_FLOOR_N)}."
+            f"differs from the reference's by less than {format_N(ERROR_FLOOR_N)}."
             if wrong < ERROR_FLOOR_N
-            else f"off by {format_N(wrong)} rms, {format_N(scene.errors.force_max_N)}"
-            " at most."
+            else f"is off by {format_N(wrong)} rms,"
+            f" {format_N(scene.errors.force_max_N)} at most."
         ),
     ]
 
 
 def describe_knees(study: AccuracyStudy) -> list[str]:
-    """Describes each knee: its cost beside the scene, and the costs on either side."""
-    # The front is over time inside the core, which noise disturbs least.
+    """Describes each knee: its cost relative to the scene, and costs on both sides."""
+    # The front uses time inside the core, which noise disturbs least.
     front = find_front(study)
     scene = find_scene_row(study)
     sentences = []
@@ -210,7 +216,7 @@ def describe_knees(study: AccuracyStudy) -> list[str]:
 
 
 def describe_peers(study: AccuracyStudy) -> list[str]:
-    """Says how long other libraries take and how far their forces differ."""
+    """Returns the times and force errors of other libraries."""
     return [
         f"{peer.library}, {peer.method}: {format_us(peer.native.median_us)} µs, p99"
         f" {format_us(peer.native.p99_us)}, for"
@@ -221,7 +227,7 @@ def describe_peers(study: AccuracyStudy) -> list[str]:
 
 
 def describe_reference(study: AccuracyStudy) -> str:
-    """Names the reference of the errors, and the motion they are measured on."""
+    """Describes the reference of the errors, and the motion."""
     return (
         f"Errors are against {study.reference.label}, at the same poses:"
         f" {study.ticks} ticks of the scene's own motion, {study.contact_ticks} of"
@@ -240,7 +246,7 @@ def describe_models(study: AccuracyStudy) -> list[str]:
 
 
 def describe_missing(study: AccuracyStudy) -> list[str]:
-    """Says what was not measured, and why."""
+    """Returns what was not measured, and why."""
     rows = [
         f"{name_setting(row)}: {row.failure_reason}"
         for row in study.rows
@@ -265,7 +271,7 @@ def describe_missing(study: AccuracyStudy) -> list[str]:
 
 
 def describe_machine(study: AccuracyStudy) -> str:
-    """Names the machine, and says how far to trust the times."""
+    """Names the machine, and warns that times are uncertain."""
     machine = study.machine
     return (
         f"{name_machine(machine)}, drake_haptics {machine['drake_haptics']}."
@@ -296,7 +302,7 @@ def _advise(study: AccuracyStudy, scene: Row) -> str:
 
 
 def _is_faster(row: Row, scene: Row) -> bool:
-    """Tells whether a row's saving in the core is worth it in the scene's tick."""
+    """Returns whether a row's saving in the core is notable in the scene's tick."""
     return get_native_us(scene) - get_native_us(row) > _WORTH * get_tick_us(scene)
 
 
@@ -331,6 +337,6 @@ def _describe_ratio(ratio: float) -> str:
 
 
 def _price_of_tenth(cheap: Row, dear: Row) -> str:
-    """Returns the time that a tenfold smaller error costs between two rows, µs."""
+    """Returns the time per tenfold reduction of the error between two rows, µs."""
     decades = math.log10(get_force_error_N(cheap) / get_force_error_N(dear))
     return format_us((get_native_us(dear) - get_native_us(cheap)) / decades)

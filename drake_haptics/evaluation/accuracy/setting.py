@@ -1,4 +1,4 @@
-"""Changes knobs of a scene: applies settings, judges them, and reads them as words."""
+"""Applies settings to a scene, classifies them, and reads them from words."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MODELS = {
     "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
 }
 _EFFECTS = "effects."
-# Keys that begin with this change the device or the tick: the loop, not its contacts.
+# Keys that begin with this change the loop, not its contacts.
 _LOOP = "device."
 # The word for no change at all.
 _NO_CHANGE = "scene"
@@ -33,11 +33,10 @@ class Setting:
     """One value of one knob, or a choice of several.
 
     Attributes:
-        knob: Name of the knob in words of the scene file, such as
-            `contact.tolerance_m`.
-        label: Value in words, with its unit, such as "1 mm".
-        changes: Keys of the scene and their values, see `change_values`. Empty for the
-            scene as it is.
+        knob: Name of the knob by keys of the scene file, such as `contact.tolerance_m`.
+        label: Value with its unit, such as "1 mm".
+        changes: Keys of the scene and their values; see `change_values`. Empty for the
+            unchanged scene.
     """
 
     knob: str
@@ -48,7 +47,7 @@ class Setting:
         """Returns a scene with the changes, for `check_values` to check.
 
         Raises:
-            SceneError: The scene has no such key, or a value is not of its kind.
+            SceneError: The scene has no such key, or a value has the wrong type.
         """
         return change_values(scene, self.changes.items())
 
@@ -63,7 +62,7 @@ class Setting:
 
 
 def find_model_change(setting: Setting) -> str:
-    """Returns a setting's difference of model in words, empty if it has none.
+    """Returns a setting's difference of model; empty without one.
 
     With such a difference another force is felt, not the same one computed less
     exactly: the "error" is the difference between two models.
@@ -79,27 +78,25 @@ def find_model_change(setting: Setting) -> str:
 
 
 def is_comparable(setting: Setting) -> bool:
-    """Tells whether a setting's figure is an error, which another setting may beat.
+    """Returns whether a setting's figure is an error that can be compared.
 
-    A setting with another model is exact by that model, see `find_model_change`; in
-    another loop a tick is another share of a second, or leaves out work under load.
+    A setting with another model is exact by that model; see `find_model_change`. In
+    another loop a tick is another share of a second, or drops work under load.
     """
     of_loop = any(key.startswith(_LOOP) for key in setting.changes)
     return not of_loop and not find_model_change(setting)
 
 
 def is_effect(setting: Setting) -> bool:
-    """Tells whether a setting takes away or changes an effect that a scene names."""
+    """Returns whether a setting removes or changes an effect of a scene."""
     return any(key.startswith(_EFFECTS) for key in setting.changes)
 
 
 def read_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Setting:
-    """Returns the setting that words such as `contact.tolerance_m=0.0005` make.
+    """Returns the setting of words such as `contact.tolerance_m=0.0005`.
 
-    Args:
-        words: Words `KEY=VALUE`, all of one setting, see `change_scene`. The single
-            word `scene` makes the scene as it is.
-        known: Settings with labels; the first with the same changes is returned.
+    All words belong to one setting; the single word `scene` is the unchanged scene. If
+    a known setting has the same changes, it is returned.
 
     Raises:
         HapticsError: A word does not have this form, or a key is given twice.
@@ -120,7 +117,7 @@ def read_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Setting
 
 
 def format_setting(setting: Setting) -> str:
-    """Returns the options that ask for a setting on a command line."""
+    """Returns the command-line options for a setting."""
     words = [
         f"{key}={_format_value(value)}" for key, value in setting.changes.items()
     ] or [_NO_CHANGE]
@@ -128,7 +125,7 @@ def format_setting(setting: Setting) -> str:
 
 
 def _format_value(value: Any) -> str:
-    """Returns a text from which `parse_setting` makes the same value."""
+    """Returns text from which `parse_setting` reads the same value."""
     if isinstance(value, str):
         word = f"key={value}"
         try:

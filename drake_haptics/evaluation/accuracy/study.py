@@ -55,16 +55,16 @@ from drake_haptics.evaluation.measuring.valgrind import require_valgrind
 from drake_haptics.scene.contact_law import require_penalty
 from drake_haptics.scene.schema import Scene
 
-# Under valgrind a tick takes fifty times as long; more are not needed, as counts do not
-# scatter.
+# Number of ticks under valgrind, where a tick takes fifty times as long and counts do
+# not scatter.
 _COUNTED_TICKS = 500
 Task = dict[str, Any]
 Progress = Callable[[str, float], None]
-# Longest motion of a quick study, simulated.
+# Longest motion of a quick study, s.
 _QUICK_S = 1.0
-# Shares of all work that are done when these steps begin.
+# Shares of all work at the beginning of these steps.
 _TRUTH, _PRESS = 0.01, 0.03
-# Shares of all work that are done when a stage begins and ends.
+# Shares of all work at the beginning and end of a stage.
 _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 
 
@@ -72,12 +72,8 @@ _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 class Measurement:
     """Measures one quantity of a setting, as a task of `run_study`.
 
-    Attributes:
-        scene: Scene as it is.
-        motion: Motion of its tool.
-        truth: Truth on that motion.
-        place: Place where its hand stops to press, for the stable stiffness; None if
-            that is not sought.
+    The place at which the scene's hand stops is for the stable stiffness; None if that
+    is not sought.
     """
 
     scene: Scene
@@ -96,7 +92,7 @@ class Measurement:
         measure = getattr(self, f"_measure_{task['what']}")
         try:
             result: dict[str, Any] = measure(scene)
-        # Drake raises RuntimeError, as a run that diverges does.
+        # RuntimeError is raised by Drake, and by runs that diverge.
         except (HapticsError, ValueError, RuntimeError, SubprocessError) as error:
             return {"failure_reason": str(error)}
         return result
@@ -148,12 +144,7 @@ def make_task(what: str, setting: Setting, **more: Any) -> Task:
 def list_timing_tasks(
     settings: Sequence[Setting], machine: Mapping[str, str | int]
 ) -> list[Task]:
-    """Returns the tasks that time each setting.
-
-    Args:
-        settings: Settings to time.
-        machine: Machine that times them. Times of another machine are not reused.
-    """
+    """Returns the tasks that time each setting; only the same machine reuses times."""
     return [
         make_task(what, setting, machine=machine)
         for setting in settings
@@ -168,46 +159,30 @@ def make_row(
     done: Sequence[tuple[Task, Mapping[str, Any]]],
 ) -> Row:
     """Returns the row of a setting."""
-    own: dict[str, list[Mapping[str, Any]]] = {
-        "errors": [],
-        "instructions": [],
-        "native": [],
-        "ticks": [],
+    own = {
+        task["what"]: result
+        for task, result in done
+        if task["setting"] == measured.to_dict()
     }
-    for task, result in done:
-        if task["setting"] == measured.to_dict():
-            own[task["what"]].append(result)
-    reasons = [
-        result["failure_reason"]
-        for results in own.values()
-        for result in results
-        if "failure_reason" in result
-    ]
+    reasons = {
+        what: own[what]["failure_reason"]
+        for what in ("errors", "instructions", "native", "ticks")
+        if "failure_reason" in own.get(what, {})
+    }
+    tool_pieces, object_pieces = own["errors"].get("pieces", (0, 0))
     return Row(
         setting=setting,
         is_scene=is_scene,
-        cost=_make_cost(own, done, is_scene),
-        errors=_make_errors(own["errors"]),
-        pieces=_read_pieces(own["errors"]),
-        failure_reason=reasons[0] if reasons else "",
-    )
-
-
-def _make_cost(
-    own: Mapping[str, Sequence[Mapping[str, Any]]],
-    done: Sequence[tuple[Task, Mapping[str, Any]]],
-    is_scene: bool,
-) -> Cost | None:
-    results = [
-        own[what][0] for what in ("native", "ticks", "instructions") if own[what]
-    ]
-    if any("failure_reason" in result for result in results):
-        return None
-    counts = own["instructions"]
-    return Cost(
-        tick=_find_times("ticks", own["ticks"][0], done, is_scene),
-        native=_find_times("native", own["native"][0], done, is_scene),
-        instructions=counts[0]["instructions"] if counts else None,
+        cost=None
+        if reasons.keys() - {"errors"}
+        else Cost(
+            tick=_find_times("ticks", own["ticks"], done, is_scene),
+            native=_find_times("native", own["native"], done, is_scene),
+            instructions=own.get("instructions", {}).get("instructions"),
+        ),
+        errors=None if "errors" in reasons else Errors(**own["errors"]["errors"]),
+        pieces=(tool_pieces, object_pieces),
+        failure_reason=next(iter(reasons.values()), ""),
     )
 
 
@@ -217,7 +192,7 @@ def _find_times(
     done: Sequence[tuple[Task, Mapping[str, Any]]],
     is_scene: bool,
 ) -> TickTimes:
-    """Returns the times of a setting by its ratio to the scene that ran beside it."""
+    """Returns the times of a setting by its ratio to the scene that ran with it."""
     beside = [
         TickTimes(**result["scene"])
         for task, result in done
@@ -229,56 +204,30 @@ def _find_times(
     return scale_times(scene, TickTimes(**own["scene"]), TickTimes(**own["own"]))
 
 
-def _make_errors(results: Sequence[Mapping[str, Any]]) -> Errors | None:
-    (result,) = results
-    return None if "failure_reason" in result else Errors(**result["errors"])
+def _make_progress(
+    stage: str, shares: tuple[float, float], report: Progress
+) -> Callable[[int, int], None]:
+    """Returns a function that reports the progress of a stage's tasks and of all work.
 
-
-def _read_pieces(results: Sequence[Mapping[str, Any]]) -> tuple[int, int]:
-    tool, objects = results[0].get("pieces", (0, 0))
-    return tool, objects
-
-
-@dataclass(frozen=True)
-class _Stage:
-    """Tasks that are done in sequence or in parallel.
-
-    Attributes:
-        what: Description of the work.
-        tasks: Tasks of the `Measurement`.
-        executor: Executor of the tasks, see `run_study`.
-        shares: Shares of all work that are done when the stage begins and ends.
+    The shares of all work are those that are done when the stage begins and ends. After
+    the first task it estimates the remaining time.
     """
+    begin, end = shares
+    steps: list[tuple[float, int]] = []
 
-    what: str
-    tasks: list[Task]
-    executor: Executor | None
-    shares: tuple[float, float]
+    def progress(done: int, total: int) -> None:
+        if not total:
+            return
+        what = f"{stage}: {done} of {total}"
+        steps.append((monotonic(), done))
+        (began_s, first), (now_s, _) = steps[0], steps[-1]
+        if first < done < total:
+            left_s = (now_s - began_s) / (done - first) * (total - done)
+            left = f"{left_s:.0f} s" if left_s < 100.0 else f"{left_s / 60.0:.0f} min"
+            what += f", about {left} left"
+        report(what, begin + (end - begin) * done / total)
 
-    def make_progress(self, report: Progress) -> Callable[[int, int], None]:
-        """Returns a callback that reports the progress of the tasks and of all work.
-
-        Once a task is done, it says how long the rest of them will take.
-        """
-        begin, end = self.shares
-        steps: list[tuple[float, int]] = []
-
-        def progress(done: int, total: int) -> None:
-            if not total:
-                return
-            what = f"{self.what}: {done} of {total}"
-            steps.append((monotonic(), done))
-            (began_s, first), (now_s, _) = steps[0], steps[-1]
-            if first < done < total:
-                left_s = (now_s - began_s) / (done - first) * (total - done)
-                what += f", about {_describe_duration(left_s)} left"
-            report(what, begin + (end - begin) * done / total)
-
-        return progress
-
-
-def _describe_duration(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
+    return progress
 
 
 def run_accuracy_study(
@@ -294,28 +243,30 @@ def run_accuracy_study(
 ) -> AccuracyStudy:
     """Measures the settings of a scene.
 
-    Errors are computed on the executor, many at a time. Times are taken afterwards, in
-    this process and one after the other. A setting that cannot be measured gets a row
-    that says why.
+    Errors are computed on the executor in parallel. Times are measured afterwards, one
+    by one in this process. A setting that cannot be measured has a row that says why.
 
     Args:
         scene: Scene with a simulated device and hand.
         name: Name of the scene, for the report.
-        settings: Settings to measure besides the scene as it is. Defaults to those of
+        settings: Settings to measure besides the unchanged scene. Defaults to those of
             all knobs.
-        executor: Executor that computes the errors, see
+        executor: Executor that computes the errors; see
             `drake_haptics.analysis.jobs.study.run_study`.
-        store: File that keeps each result; a call with the same scene and file resumes.
-        progress: Callback that takes the current work and the share done, in [0, 1].
+        store: File that stores each result; a call with the same scene and file
+            resumes.
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
         quick: Whether to measure one setting per knob on a short motion, without stable
             stiffnesses.
         count_instructions: Whether to count the core's instructions with valgrind, in
-            the 500 ticks with the most contact, for some ten seconds each.
+            the 500 ticks with the most contact, which takes some ten seconds for each
+            setting.
 
     Raises:
-        HapticsError: Instructions are asked for, but valgrind is not installed.
-        SceneError: The scene itself cannot be built, or has no penalty law.
-        drake_haptics.simulation.run.RunError: The scene itself diverges.
+        HapticsError: `count_instructions` is set, but valgrind is not installed.
+        SceneError: The scene cannot be built, or is not under the penalty law.
+        drake_haptics.simulation.run.RunError: The unchanged scene diverges.
         KeyboardInterrupt: Ctrl-C is pressed; finished results are in the store.
     """
     report = progress or (lambda what, share: None)
@@ -330,22 +281,23 @@ def run_accuracy_study(
     measured = [s for s, same in zip(settings, measured_of, strict=True) if s is same]
     machine = describe_machine()
     timing = list_timing_tasks(measured, machine)
+    errors = [make_task("errors", s) for s in measured]
     counts = [make_task("instructions", s) for s in measured if count_instructions]
     done: list[tuple[Task, dict[str, Any]]] = []
-    for stage in (
-        _Stage("errors", [make_task("errors", s) for s in measured], executor, _ERRORS),
-        _Stage("instructions", counts, executor, _COUNTS),
-        # Nothing else runs while times are taken.
-        _Stage("times", timing, SerialExecutor(), _TIMES),
+    for stage, tasks, of_stage, shares in (
+        ("errors", errors, executor, _ERRORS),
+        ("instructions", counts, executor, _COUNTS),
+        # Nothing else runs while times are measured.
+        ("times", timing, SerialExecutor(), _TIMES),
     ):
         results = run_study(
             measurement,
-            stage.tasks,
-            executor=stage.executor,
+            tasks,
+            executor=of_stage,
             store=store,
-            progress=stage.make_progress(report),
+            progress=_make_progress(stage, shares, report),
         )
-        done += zip(stage.tasks, results, strict=True)
+        done += zip(tasks, results, strict=True)
     return AccuracyStudy(
         scene=name,
         description=scene.description,
@@ -361,7 +313,7 @@ def run_accuracy_study(
 
 
 def _find_measured(scene: Scene, settings: Sequence[Setting]) -> list[Setting]:
-    """Returns for each setting the first one that makes the same scene."""
+    """Returns, for each setting, the first one with the same scene."""
     first: dict[str, Setting] = {}
     return [
         first.setdefault(repr(asdict(setting.apply(scene))), setting)
@@ -370,7 +322,7 @@ def _find_measured(scene: Scene, settings: Sequence[Setting]) -> list[Setting]:
 
 
 def _prepare(scene: Scene, report: Progress, quick: bool) -> Measurement:
-    """Finds the motion, the truth and the place that settings are compared on."""
+    """Finds the motion, the truth and the place for comparing settings."""
     report("recording the motion", 0.0)
     motion = record_motion(scene, choose_duration(scene, _QUICK_S) if quick else None)
     report("finding the truth", _TRUTH)
@@ -378,7 +330,7 @@ def _prepare(scene: Scene, report: Progress, quick: bool) -> Measurement:
     place = None
     if not quick:
         report("looking for the firmest contact", _PRESS)
-        # One thread as in a task: the same bits on any number of cores.
+        # One thread, as in a task, gives the same bits on any number of cores.
         with one_blas_thread():
             place = find_pressed_place(scene)
     return Measurement(scene, motion, truth, place)

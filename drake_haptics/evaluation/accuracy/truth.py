@@ -18,27 +18,27 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
 
-# A force below this share of the reference's largest has no direction to speak of.
+# A force below this share of the reference's largest has no meaningful direction.
 _FIRM_SHARE = 0.1
 
 
 def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
     """Returns the signed distance of the deepest pair of convex pieces at each pose.
 
-    Each pair is queried for the global depth, the least way out of all, which is
-    proven, at all poses at which its bounding spheres come near. The pairs do not
-    depend on each other, nor on what a tracker keeps or leaves out. If tool and objects
-    are one convex piece each, this is the exact penetration depth. Pieces of a larger
-    mesh have faces that are not on the mesh: a contact never leaves through such a
-    face, and so can be some micrometers deeper than the pair.
+    Each pair is queried for the global depth, the proven least way out, at all poses at
+    which its bounding spheres are near. The pairs are independent of each other and of
+    a tracker. If tool and objects are one convex piece each, this is the exact
+    penetration depth. Pieces of a larger mesh have faces that are not on the mesh: a
+    contact never leaves through such a face, and so can be some micrometers deeper than
+    the pair.
 
     Args:
         haptic: Diagram with the pieces of tool and objects, and the objects' poses.
         X_WT: (n, 7) poses of the tool, m.
 
     Returns:
-        (n,) distances, m, negative where a pair penetrates; infinite beyond the
-        contact's tolerance.
+        (n,) distances, m, negative if a pair penetrates; infinite beyond the contact's
+        tolerance.
     """
     tolerance_m = haptic.scene.contact.tolerance_m
     R_WT = _read_rotations(X_WT).as_matrix()
@@ -62,7 +62,7 @@ def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
 
 
 def _find_near(p_WC: np.ndarray, centers_W: np.ndarray, reach: np.ndarray) -> list[int]:
-    """Returns the indices of the spheres that a moving point may come into."""
+    """Returns the indices of the spheres that a moving point may enter."""
     low, high = p_WC.min(axis=0), p_WC.max(axis=0)
     nearest = np.clip(centers_W, low, high)
     near = np.linalg.norm(centers_W - nearest, axis=1) < reach
@@ -102,10 +102,10 @@ class Truth:
         return int(np.isfinite(self.distance).sum())
 
     def find_busiest(self, num_ticks: int) -> tuple[int, int]:
-        """Returns first and end of the stretch of ticks with the most contact.
+        """Returns first and end of the interval of ticks with the most contact.
 
         Args:
-            num_ticks: Length of the stretch; all ticks if there are fewer.
+            num_ticks: Length of the interval; all ticks if there are fewer.
         """
         num_ticks = min(num_ticks, len(self.distance))
         touched = np.concatenate([[0], np.cumsum(np.isfinite(self.distance))])
@@ -116,8 +116,8 @@ class Truth:
 def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
     """Returns the reference's wrench along a motion, and the exact depth of the tool.
 
-    The wrench is the finest that the scene's own physics gives; the depth is found
-    without it, see `calc_exact_distance`.
+    The wrench is that of the finest setting with the scene's physics;
+    `calc_exact_distance` finds the depth independently.
     """
     haptic = build_without_scene_warnings(reference)
     p_TTcm = haptic.loop.haptic_tool.dynamics.p_TTcm
@@ -131,7 +131,7 @@ def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
 
 
 def shift_wrench(F_To_W: np.ndarray, X_WT: np.ndarray, p_TP: np.ndarray) -> np.ndarray:
-    """Returns wrenches on the tool at another point of it.
+    """Returns wrenches on the tool at another point.
 
     Args:
         F_To_W: (n, 6) wrenches [τ; f] at the tool's origin in the world.
@@ -155,7 +155,7 @@ def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Err
     """Replays a motion in a scene and compares its answers with the truth.
 
     Returns:
-        The errors; energy and stiffness, which are the closed loop's, are NaN and None.
+        The errors, without those of the closed loop: energy is NaN, stiffness None.
     """
     replay = replay_tool(scene, motion)
     F_Tcm_W = shift_wrench(replay.F_To_W, motion.X_WT, truth.p_TTcm)
@@ -192,12 +192,12 @@ def compare(
 
 
 def _calc_turns(force: np.ndarray, firm_N: float) -> np.ndarray:
-    """Returns (n - 1,) angles by which forces turn from a tick to the next, rad.
+    """Returns (n - 1,) angles between forces at successive ticks, rad.
 
-    An angle is zero if one of its two forces is not larger than `firm_N`.
+    An angle is zero unless both forces are larger than `firm_N`.
     """
     before, after = force[:-1], force[1:]
-    # Sine and cosine together are exact for small and large turns alike.
+    # Sine and cosine together are accurate for small and large turns.
     sine = np.linalg.norm(np.cross(before, after), axis=1)
     turn = np.arctan2(sine, np.einsum("ni,ni->n", before, after))
     size = np.linalg.norm(force, axis=1)

@@ -1,5 +1,5 @@
-"""Benchmarks of the contact query on the reader's own machine.
+"""Measures the speed of queries and loops on this machine.
 
-Other libraries are measured in the same run where they are installed
-(`pip install drake_haptics[peers]`). `drake-haptics bench` is the command.
+Other libraries are measured in the same run if they are installed (`pip install
+drake_haptics[peers]`). `drake-haptics bench` is the command.
 """

@@ -1,4 +1,4 @@
-"""Runs the benchmarks, holds their figures and makes their tables."""
+"""Runs the benchmarks and makes their tables."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from drake_haptics.report.page import Table
 from drake_haptics.report.plain_data import read_figures, to_plain_data
 
 PARTS = ("pairs", "python", "scenes", "loop")
-# Callback that takes the next work and the share of the part that is done.
+# Function that is called with the current work and the share of the part done.
 Progress = Callable[[str, float], None]
 _LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
@@ -55,20 +55,14 @@ _LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room
 class Effort:
     """The extent of a measurement.
 
-    Attributes:
-        sizes: Sizes of the bodies of convex pairs, vertices.
-        presses: Presses of each pair.
-        motions: Motions in each scene.
-        repeats: Repeats of each of these; at least 3, so that interruptions fall out.
-        large_scenes: Whether scenes of 1000 pieces and more are run.
-        loop_s: Duration of the loops' motion, s.
-        loop_scenes: Shipped scenes in which loops are run.
+    Sizes are numbers of vertices of convex bodies. Large scenes have 1000 pieces or
+    more. All presses, motions and loops are repeated.
     """
 
     sizes: tuple[int, ...] = SIZES
     presses: int = 6
     motions: int = 6
-    repeats: int = 8
+    repeats: int = 8  # at least 3, so that interruptions drop out
     large_scenes: bool = True
     loop_s: float = 4.0
     loop_scenes: tuple[str, ...] = ("cup_spoon", "torus_peg")
@@ -87,16 +81,12 @@ QUICK = Effort(
 
 @dataclass(frozen=True)
 class BenchFigures:
-    """All figures of a run.
+    """All figures of a run, grouped by pair and scene.
 
     Attributes:
-        machine: Machine that took the times, see `describe_machine`.
-        libraries: Name -> version of those that were measured on pairs or in loops.
-        missing: Name -> reason why it was not measured.
-        pairs: Figures of convex pairs, those of a pair together.
-        python: Figures of single queries from Python.
-        scenes: Figures of scenes, those of a scene together.
-        loop: Figures of whole loops.
+        machine: Machine of the times; see `describe_machine`.
+        libraries: Name -> version of libraries that were measured on pairs or in loops.
+        missing: Name -> reason why a library was not measured.
     """
 
     machine: dict[str, Any]
@@ -108,7 +98,7 @@ class BenchFigures:
     loop: list[LoopFigures] = field(default_factory=list)
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns everything as plain data; None stands for NaN."""
+        """Returns the figures as plain data, with None for NaN."""
         return to_plain_data(self)
 
     @staticmethod
@@ -124,12 +114,12 @@ def run_benchmarks(
     progress: Progress = lambda what, share: None,
     outside: Sequence[type[OutsideLibrary]] = (),
 ) -> BenchFigures:
-    """Measures this package and the libraries that are installed, in this thread.
+    """Measures this package and installed libraries in this thread.
 
     Raises:
         HapticsError: The folder has none of the meshes.
     """
-    makers = scene_makers(effort.motions, meshes)  # first, as it may refuse the folder
+    makers = scene_makers(effort.motions, meshes)  # first, as it checks the folder
     figures = BenchFigures(machine=describe_machine())
     figures.libraries.update({library.name: library.version for library in outside})
     if "pairs" in parts:
@@ -229,9 +219,7 @@ def make_tables(figures: BenchFigures) -> list[Table]:
     tables = []
     if figures.pairs:
         tables += [
-            ratio_table(figures.pairs),
-            error_table(figures.pairs),
-            time_table(figures.pairs),
+            make(figures.pairs) for make in (ratio_table, error_table, time_table)
         ]
     if figures.python:
         tables.append(python_table(figures.python))

@@ -1,4 +1,4 @@
-"""Measures a library from outside, which one class in a file adapts."""
+"""Measures an outside library, which a class in a user's file adapts."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.one_line import one_line
 from drake_haptics.evaluation.benchmark.pair_library import (
     PairAnswers,
     PairLibrary,
@@ -27,11 +28,10 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 @dataclass(frozen=True)
 class OutsideContact:
-    """A library's answer about two convex bodies.
+    """A library's answer for two convex bodies.
 
     Attributes:
-        distance: Signed distance, m; negative is the penetration depth, NaN means that
-            there is no answer.
+        distance: Signed distance, m; negative in penetration, NaN without an answer.
         nhat_BA_W: (3,) unit normal out of B into A.
         p_WCa: (3,) witness point on A, m.
         p_WCb: (3,) witness point on B, m.
@@ -42,12 +42,13 @@ class OutsideContact:
     p_WCa: NDArray[np.float64]
     p_WCb: NDArray[np.float64]
 
+    __repr__ = one_line
+
 
 class OutsideLibrary(ABC):
-    """Two convex hulls in a library that this package does not know.
+    """Two convex hulls in an outside library.
 
-    A subclass in a file of your own is measured by
-    `drake-haptics bench --library FILE`.
+    `drake-haptics bench --library FILE` measures a subclass in your file.
 
     Attributes:
         name: Name in tables.
@@ -61,7 +62,7 @@ class OutsideLibrary(ABC):
     def __init__(
         self, A_vertices: NDArray[np.float64], B_vertices: NDArray[np.float64]
     ):
-        """Builds both hulls; not timed.
+        """Builds both hulls, which is not timed.
 
         Args:
             A_vertices: (n, 3) vertices of the body that moves, in its frame, m. In
@@ -71,14 +72,11 @@ class OutsideLibrary(ABC):
 
     @abstractmethod
     def query(self, X_WA: NDArray[np.float64]) -> OutsideContact:
-        """Returns the contact at a pose (4, 4) of A; timed from call to return."""
+        """Returns the contact at a pose (4, 4) of A; the call is timed."""
 
 
 def load_library(file: Path) -> type[OutsideLibrary]:
-    """Returns the adapter in a Python file, which is run for it.
-
-    Args:
-        file: File that defines one subclass of `OutsideLibrary`.
+    """Runs a Python file and returns its subclass of `OutsideLibrary`.
 
     Raises:
         HapticsError: The file cannot be imported, or does not define one such class.
@@ -108,18 +106,13 @@ def load_library(file: Path) -> type[OutsideLibrary]:
 
 
 def make_pair_library(library: type[OutsideLibrary]) -> PairLibrary:
-    """Returns an adapter as a library that is measured on convex pairs."""
-    return PairLibrary(
-        name=library.name,
-        version=library.version,
-        ours=False,
-        make_query=partial(_OutsidePair, library),
-        outside=True,
-    )
+    """Returns an outside library as a library for convex pairs."""
+    make_query = partial(_OutsidePair, library)
+    return PairLibrary(library.name, library.version, False, make_query, outside=True)
 
 
 class _OutsidePair:
-    """One pair, timed between calls from Python."""
+    """One pair, timed in Python."""
 
     def __init__(self, library: type[OutsideLibrary], pair: PairShape):
         self._make = partial(library, pair.A_vertices, pair.B_vertices)
@@ -138,10 +131,10 @@ class _OutsidePair:
 
 
 class PiecePairs:
-    """The pairs of a tool's pieces with those of objects, in a library from outside.
+    """The pairs of a tool's pieces with those of objects, in an outside library.
 
-    Near pairs are found by their boxes along the world's axes, in NumPy, which is timed
-    with the library's queries.
+    Near pairs are found by axis-aligned boxes in NumPy, which is timed together with
+    the library's queries.
     """
 
     def __init__(
@@ -186,7 +179,7 @@ class PiecePairs:
 
 
 class _Boxes:
-    """Boxes about sets of points, along the axes of a frame in which they are posed."""
+    """Axis-aligned bounding boxes of sets of points."""
 
     def __init__(self, bodies: Sequence[NDArray[np.float64]]):
         self._points = np.concatenate(bodies)
@@ -202,7 +195,7 @@ class _Boxes:
 
 
 class OutsideScene:
-    """A scene in a library from outside."""
+    """A scene in an outside library."""
 
     def __init__(self, problem: SceneProblem, library: type[OutsideLibrary]):
         self._tolerance_m = problem.tolerance_m

@@ -1,4 +1,4 @@
-"""Defines the queries of a library on a convex pair, and finds libraries."""
+"""Defines queries of a convex pair in a library, and finds libraries."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PairQuery(Protocol):
     """One pair in one library, ready to be queried."""
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
-        """Forgets earlier queries, then answers one pose of A after the other.
+        """Forgets earlier queries, then answers each pose of A in order.
 
         Args:
             X_WA: (n, 4, 4) poses of A; B is at the world's origin.
@@ -45,14 +45,10 @@ class PairQuery(Protocol):
 
 @dataclass(frozen=True)
 class PairLibrary:
-    """A library in one of its modes.
+    """A library in one of its modes, which builds the bodies of a pair.
 
-    Attributes:
-        name: Name in tables.
-        version: Version of the library.
-        ours: Whether it is this package.
-        make_query: Builds the bodies of a pair in the library.
-        outside: Whether it was named for this run, as an `OutsideLibrary`.
+    It is this package, one that was named for this run as an `OutsideLibrary`, or
+    another one.
     """
 
     name: str
@@ -65,12 +61,9 @@ class PairLibrary:
 def ask_each(
     X_WA: np.ndarray, ask: Callable[[np.ndarray], tuple[float, np.ndarray, float]]
 ) -> PairAnswers:
-    """Returns the answers of a library that is queried at one pose after the other.
+    """Returns the answers of a library for each pose (4, 4) of A.
 
-    Args:
-        X_WA: (n, 4, 4) poses of A.
-        ask: Function of a pose that returns distance, normal and time of the answer,
-            see `PairAnswers`.
+    An answer is distance, normal and time.
     """
     distance, normal, seconds = zip(*map(ask, X_WA), strict=True)
     return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
@@ -79,7 +72,7 @@ def ask_each(
 def normals_between(
     p_WCa: np.ndarray, p_WCb: np.ndarray, distance: np.ndarray
 ) -> np.ndarray:
-    """Returns (n, 3) nhat_BA_W for libraries that give witness points only.
+    """Returns (n, 3) nhat_BA_W for libraries that only give witness points.
 
     Args:
         p_WCa: (n, 3) witness points on A, m.
@@ -92,12 +85,12 @@ def normals_between(
 
 
 def find_libraries() -> tuple[list[PairLibrary], dict[str, str]]:
-    """Returns the libraries that can be measured here, this package's depths first.
+    """Returns the libraries that can be measured here, this package first.
 
-    Adapters in C++ are compiled when they are first used, in some ten seconds.
+    Adapters in C++ are compiled on first use, which takes some ten seconds.
 
     Returns:
-        The libraries; and name -> reason of each one that cannot be measured.
+        The libraries, and name -> reason for each that cannot be measured.
     """
     found: list[PairLibrary] = []
     missing: dict[str, str] = {}

@@ -1,9 +1,10 @@
-"""Measures libraries on a convex pair, side by side, against its exact answer."""
+"""Measures libraries on a convex pair, compared with its exact answer."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,23 +16,17 @@ from drake_haptics.evaluation.benchmark.pair_library import (
 from drake_haptics.evaluation.benchmark.pairs import PairShape, make_presses
 from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
 
-# Relative errors are of frames whose distance is at least this, m.
+# Least distance of frames with a relative error, m.
 _JUDGED_M = 1e-6
-# A depth is the global one within this share, which round-off stays below.
+# Relative tolerance, above round-off, within which a depth is the global one.
 _EXACT = 1e-9
-# A frame is wrong beyond this relative error: no tolerance explains it.
+# Relative error beyond which a frame is wrong, more than any tolerance explains.
 _WRONG = 1e-3
 _STEADY_RAD = np.radians(1.0)
 
 
-@dataclass(frozen=True)
-class PairTruth:
-    """The best known answer of each frame.
-
-    Attributes:
-        distance: (n,) signed distances, m.
-        nhat_BA_W: (n, 3) unit normals whose support gaps these are.
-    """
+class PairTruth(NamedTuple):
+    """The signed distances (n,), m, and the normals with these support gaps."""
 
     distance: np.ndarray
     nhat_BA_W: np.ndarray
@@ -40,13 +35,13 @@ class PairTruth:
 def find_truth(
     pair: PairShape, X_WA: np.ndarray, answers: Sequence[PairAnswers]
 ) -> PairTruth:
-    """Returns the best of all libraries' answers, checked without any of them.
+    """Returns the best of all libraries' answers, checked independently.
 
     Every unit vector n bounds the signed distance of two convex bodies from below by
-    its support gap h(n) = min n·a − max n·b, and the largest gap is the distance,
-    apart as well as in depth. Gaps of the libraries' normals, found by going through
-    all vertices, therefore judge all libraries alike: a library that finds a larger gap
-    shows that the others are wrong.
+    its support gap h(n) = min n·a − max n·b, and the largest gap is the distance, apart
+    as well as in depth. Therefore the gaps of the libraries' normals, computed over all
+    vertices, judge all libraries alike: one that finds a larger gap shows that the
+    others are wrong.
     """
     normals = np.stack([a.nhat_BA_W for a in answers])
     gaps = np.stack([support_gaps(pair, X_WA, n) for n in normals])
@@ -71,20 +66,16 @@ class PairFigures:
     """Times and errors of one library on one pair.
 
     Attributes:
-        kind: Kind of the pair.
         size: Vertices of each body.
-        library: Name of the library.
-        ours: Whether it is this package.
         apart: Times of the frames in which the bodies are apart.
         in_depth: Times of the frames in which they penetrate.
         max_relative_error: Largest relative error of the distance, over the frames of
             at least 1 µm.
         wrong_share: Share of the frames that are wrong by more than 0.1 %.
         exact_depth_share: Share of the frames in depth that have the global depth.
-        max_jump_deg: Largest turn of the normal in a frame in which the exact one
-            turns by less than 1°.
+        max_jump_deg: Largest turn of the normal in a frame in which the exact one turns
+            by less than 1°.
         failed_frames: Frames without an answer.
-        outside: Whether the library was named for this run.
     """
 
     kind: str
@@ -109,8 +100,8 @@ def run_pair(
 ) -> list[PairFigures]:
     """Returns the figures of each library on one pair.
 
-    The libraries take turns on each press, in rotating order, all in this thread.
-    The first frame of a press starts from nothing and is left out.
+    The libraries take turns on each press, in rotating order, in this thread. The first
+    frame of a press starts cold and is left out.
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []
@@ -131,13 +122,11 @@ def _run_press(
     X_WA: np.ndarray, queries: Sequence[PairQuery], repeats: int
 ) -> tuple[list[np.ndarray], list[PairAnswers]]:
     """Returns typical times (n,) and the answers of each query."""
-    seconds: list[list[np.ndarray]] = [[] for _ in queries]
-    answers: dict[int, PairAnswers] = {}
+    answers: list[list[PairAnswers]] = [[] for _ in queries]
     for i in take_turns(range(len(queries)), repeats):
-        answers[i] = queries[i].run(X_WA)
-        seconds[i].append(answers[i].seconds)
-    times = [typical(np.array(repeated)) for repeated in seconds]
-    return times, [answers[i] for i in range(len(queries))]
+        answers[i].append(queries[i].run(X_WA))
+    times = [typical(np.array([each.seconds for each in own])) for own in answers]
+    return times, [own[-1] for own in answers]
 
 
 def _figures(
@@ -174,7 +163,7 @@ def _figures(
 
 
 def _jumps(normals: np.ndarray, exact: np.ndarray) -> np.ndarray:
-    """Returns turns (m,), rad, of normals where the exact ones turn steadily."""
+    """Returns turns (m,) of normals, rad, where the exact ones turn steadily."""
     steady = _turns(exact) < _STEADY_RAD
     turns = _turns(normals)[steady]
     return turns[np.isfinite(turns)]

@@ -13,7 +13,7 @@ from drake_haptics.report.page import Table
 
 Column = Callable[[PairFigures], float]
 
-# Heading -> figure of a library on a pair, µs, of which ratios are taken.
+# Heading -> figure of a library on a pair, µs, for ratios.
 COLUMNS: dict[str, Column] = {
     "apart median": lambda f: f.apart.median_us,
     "apart p99": lambda f: f.apart.p99_us,
@@ -28,8 +28,8 @@ def ratios_to_fastest(
 ) -> dict[str, list[float]]:
     """Returns library name -> ratio on each pair.
 
-    The fastest library of a pair is the one with the smallest figure in the column
-    among those that are not this package. Pairs without such a library have no ratio.
+    The fastest library of a pair is that with the smallest figure in the column, except
+    this package. Pairs without another library have no ratio.
     """
     ratios: dict[str, list[float]] = {}
     for _, group in groupby(figures, key=lambda f: (f.kind, f.size)):
@@ -98,40 +98,31 @@ def ratio_table(figures: Sequence[PairFigures]) -> Table:
 def error_table(figures: Sequence[PairFigures]) -> Table:
     """Returns the errors of the libraries."""
 
-    def row(library: str) -> tuple[str, ...]:
-        own = [f for f in figures if f.library == library]
-        frames = sum(f.apart.ticks + f.in_depth.ticks for f in own)
-        deep = sum(f.in_depth.ticks for f in own)
-        wrong = sum(
-            f.wrong_share * (f.apart.ticks + f.in_depth.ticks) for f in own
-        ) / max(frames, 1)
-        exact = sum(f.exact_depth_share * f.in_depth.ticks for f in own) / max(deep, 1)
-        return (
-            library,
-            f"{max(f.max_relative_error for f in own):.0e}",
-            f"{100 * wrong:.2f} %",
-            f"{100 * exact:.2f} %",
-            f"{max(f.max_jump_deg for f in own):.1f}°",
-            str(sum(f.failed_frames for f in own)),
-        )
+    def share(own: list[PairFigures], name: str, frames: list[int]) -> str:
+        total = sum(getattr(f, name) * n for f, n in zip(own, frames, strict=True))
+        return f"{100 * total / max(sum(frames), 1):.2f} %"
 
-    return Table(
-        title="Convex pairs: errors",
-        note=(
-            "Against the largest support gap of any library's normal. Wrong: by more "
-            "than 0.1 % of the distance. Exact depth: of the frames in depth, those "
-            "with the global depth to round-off. Jump: largest turn of the normal in "
-            "a frame in which the exact one turns by less than 1°."
-        ),
-        header=(
-            "library",
-            "largest relative error",
-            "wrong",
-            "exact depth",
-            "largest jump",
-            "no answer",
-        ),
-        rows=[row(library) for library in _libraries(figures)],
+    return Table.of(
+        "Convex pairs: errors",
+        "Against the largest support gap of any library's normal. Wrong: by more "
+        "than 0.1 % of the distance. Exact depth: of the frames in depth, those "
+        "with the global depth to round-off. Jump: largest turn of the normal in "
+        "a frame in which the exact one turns by less than 1°.",
+        {
+            "library": lambda own: own[0].library,
+            "largest relative error": lambda own: (
+                f"{max(f.max_relative_error for f in own):.0e}"
+            ),
+            "wrong": lambda own: share(
+                own, "wrong_share", [f.apart.ticks + f.in_depth.ticks for f in own]
+            ),
+            "exact depth": lambda own: share(
+                own, "exact_depth_share", [f.in_depth.ticks for f in own]
+            ),
+            "largest jump": lambda own: f"{max(f.max_jump_deg for f in own):.1f}°",
+            "no answer": lambda own: str(sum(f.failed_frames for f in own)),
+        },
+        [_of(figures, library) for library in _libraries(figures)],
     )
 
 
@@ -141,7 +132,7 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
     pairs = list(dict.fromkeys((f.kind, f.size) for f in figures))
     named = [f for f in _libraries(figures) if _of(figures, f)[0].outside]
     others = {f.library for f in figures if not f.ours}
-    # A single other library is named once, in the headings.
+    # A single other library is named only in the headings.
     alone = next(iter(others)) if len(others) == 1 else None
 
     def cells(kind: str, size: int, median: Column, p99: Column) -> list[str]:
@@ -184,26 +175,22 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
 def python_table(figures: Sequence[PythonFigures]) -> Table:
     """Returns the times of single queries from Python."""
     mean = geometric_mean([f.ratio for f in figures])
-    return Table(
-        title="One pair query from Python",
-        note=(
-            "Medians over whole presses, from the (4, 4) pose to the distance; coal "
-            f"in the fastest of its starts. Geometric mean of the ratio: {mean:.2f}."
-        ),
-        header=(
-            *("pair, vertices", "drake_haptics, µs", "coal, µs", "ratio"),
-            *(f"{name}, µs" for name in figures[0].outside_us),
-        ),
-        rows=[
-            (
-                f"{f.kind}, {f.size}",
-                f"{f.ours_us:.2f}",
-                f"{f.coal_us:.2f}",
-                f"{f.ratio:.2f}",
-                *(f"{cost_us:.2f}" for cost_us in f.outside_us.values()),
-            )
-            for f in figures
-        ],
+
+    def outside(name: str) -> Callable[[PythonFigures], str]:
+        return lambda f: f"{f.outside_us[name]:.2f}"
+
+    return Table.of(
+        "One pair query from Python",
+        "Medians over whole presses, from the (4, 4) pose to the distance; coal "
+        f"in the fastest of its starts. Geometric mean of the ratio: {mean:.2f}.",
+        {
+            "pair, vertices": lambda f: f"{f.kind}, {f.size}",
+            "drake_haptics, µs": lambda f: f"{f.ours_us:.2f}",
+            "coal, µs": lambda f: f"{f.coal_us:.2f}",
+            "ratio": lambda f: f"{f.ratio:.2f}",
+            **{f"{name}, µs": outside(name) for name in figures[0].outside_us},
+        },
+        figures,
     )
 
 

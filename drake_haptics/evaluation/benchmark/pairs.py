@@ -1,4 +1,4 @@
-"""Makes the twenty convex pairs, four kinds in five sizes, and presses of each."""
+"""Makes twenty convex pairs, of four kinds in five sizes, and presses of each."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from functools import cache
 from itertools import product
 
 import numpy as np
-import trimesh
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
 
@@ -21,14 +20,7 @@ DEPTH_SHARE = 0.2
 
 @dataclass(frozen=True)
 class PairShape:
-    """Two convex bodies of as many vertices each.
-
-    Attributes:
-        kind: One of `KINDS`.
-        size: Vertices of each body.
-        A_vertices: (size, 3) vertices of the moving body, m.
-        B_vertices: (size, 3) vertices of the resting body, m.
-    """
+    """A moving and a resting convex body, (size, 3) vertices each, m."""
 
     kind: str
     size: int
@@ -48,9 +40,9 @@ def make_pair(kind: str, size: int) -> PairShape:
     vertices are extreme.
 
     Args:
-        kind: "ball", "ellipsoid" or "slab" for two bodies of that kind, the second
-            one slightly smaller so that no two features match by symmetry;
-            "pen-sphere" for a pen on a ball.
+        kind: "ball", "ellipsoid" or "slab" for two bodies of that kind, the second one
+            slightly smaller so that no features match by symmetry; "pen-sphere" for a
+            pen on a ball.
         size: Vertices of each body, one of `SIZES`.
 
     Raises:
@@ -76,36 +68,38 @@ def _ellipsoid(unit: np.ndarray) -> np.ndarray:
 
 
 def _slab(unit: np.ndarray) -> np.ndarray:
-    # x⁴ + y⁴ + z⁴ = 1, flattened: nearly plane, yet strictly convex.
+    # x⁴ + y⁴ + z⁴ = 1, flattened: nearly plane, but strictly convex.
     return unit / (unit**4).sum(axis=1, keepdims=True) ** 0.25 * (1.0, 0.8, 0.2)
 
 
 def _pen(unit: np.ndarray) -> np.ndarray:
-    # (x² + y²)² + z⁴ = 1, drawn out: nearly a cylinder.
+    # (x² + y²)² + z⁴ = 1, elongated: nearly a cylinder.
     across = (unit[:, :2] ** 2).sum(axis=1, keepdims=True)
     return unit / (across**2 + unit[:, 2:] ** 4) ** 0.25 * (0.15, 0.15, 1.5)
 
 
 @cache
 def _directions(size: int) -> np.ndarray:
-    """Returns even unit vectors, to corners of a cube or a divided icosahedron."""
+    """Returns even unit vectors, from a cube or a subdivided icosahedron."""
     if size == 8:
         return np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
     # Each division makes four triangles of one: n vertices become 4 n - 6.
     divisions = {42: 1, 162: 2, 642: 3, 2562: 4}
     if size not in divisions:
         raise ValueError(f"size must be one of {SIZES}, not {size}")
+    # Imported here, because under valgrind it takes seconds.
+    import trimesh
+
     return np.array(trimesh.creation.icosphere(divisions[size]).vertices)
 
 
 def make_presses(pair: PairShape, count: int) -> list[np.ndarray]:
-    """Returns presses of A on B from random sides, the same on every call.
+    """Returns presses of A on B from random sides, identical on every call.
 
-    A's center comes straight in, rests for an instant and withdraws, its speed a
-    sine of at most 0.2 m/s, while A turns about a fixed axis at up to 2 rad/s,
-    fastest where the center rests. At its deepest the center has gone 20 % of the
-    offset at which the bodies touch in that direction and attitude; it starts as far
-    outside.
+    A's center moves straight in, rests for an instant and withdraws, with a sinusoidal
+    speed of at most 0.2 m/s, while A turns about a fixed axis at up to 2 rad/s, fastest
+    at the deepest point. There the center is deeper by 20 % of the offset at which the
+    bodies touch in that direction and attitude; it starts as far outside.
 
     Returns:
         For each press the poses X_WA (n, 4, 4), a tick apart; B rests at the world's
@@ -123,7 +117,7 @@ def _press(pair: PairShape, rng: np.random.Generator) -> np.ndarray:
     seconds = np.pi * stroke_m / MAX_SPEED_M_S
     phase = 2 * np.pi * np.arange(0, seconds, 1 / RATE_HZ) / seconds
     offset_m = (1 - DEPTH_SHARE) * touch_m + stroke_m * (1 + np.cos(phase)) / 2
-    # The integral of (1 + cos 2·phase) · 1 rad/s, zero where it is deepest.
+    # The integral of (1 + cos 2·phase) · 1 rad/s, zero at the deepest point.
     turn_rad = (phase - np.pi + np.sin(2 * phase) / 2) * seconds / (2 * np.pi)
     X_WA = np.tile(np.eye(4), (len(phase), 1, 1))
     for X, offset, angle in zip(X_WA, offset_m, turn_rad, strict=True):

@@ -1,4 +1,4 @@
-"""Times one pair query from Python, in this package and in coal's own binding."""
+"""Times one pair query from Python, in this package and in coal's binding."""
 
 from __future__ import annotations
 
@@ -16,14 +16,10 @@ from drake_haptics.evaluation.measuring.timing import typical
 
 @dataclass(frozen=True)
 class PythonFigures:
-    """Time of one query from a Python program, from the pose to the distance.
+    """Median times of one query from a Python program, from the pose to the distance.
 
-    Attributes:
-        kind: Kind of the pair.
-        size: Vertices of each body.
-        ours_us: Median of this package, tracked, µs.
-        coal_us: Median of the faster of coal's starts, µs.
-        outside_us: Medians of the libraries that were named for this run, µs.
+    They are those of this package (tracked), of coal's fastest start, and of outside
+    libraries.
     """
 
     kind: str
@@ -46,27 +42,27 @@ def run_python_pair(
 ) -> PythonFigures:
     """Returns the times of a single query from Python, on all frames of the presses.
 
-    Both sides get a (4, 4) pose and give the distance, in turns on each press. Coal
-    needs its own pose object, which is part of its query.
+    All take a (4, 4) pose and return the distance, in turns on each press. Coal needs a
+    pose object, which is part of its query.
     """
     bodies = pair.A_vertices, pair.B_vertices
+    ours = ConvexPair(ConvexPolytope(bodies[0]), ConvexPolytope(bodies[1]))
+    X_WB = np.eye(4)
     queries: dict[str, Callable[[np.ndarray], object]] = {
-        "ours": _our_query(pair),
+        "ours": lambda X_WA: ours.query(X_WA, X_WB).distance,
         "cold": CoalQuery(*bodies, "DefaultGuess"),
         "boxes": CoalQuery(*bodies, "BoundingVolumeGuess"),
         "warm": CoalQuery(*bodies, "CachedGuess"),
     }
     for library in outside:
         queries[library.name] = library(*bodies).query
-    seconds: dict[str, list[np.ndarray]] = {name: [] for name in queries}
-    for X_WA in make_presses(pair, presses):
-        repeated: dict[str, list[list[float]]] = {name: [] for name in queries}
-        for _ in range(repeats):
-            for name, query in queries.items():
-                repeated[name].append(_timed(query, X_WA))
-        for name in queries:
-            seconds[name].append(typical(np.array(repeated[name])))
-    medians = {n: 1e6 * float(np.median(np.concatenate(s))) for n, s in seconds.items()}
+    # For each press the times (repeats, queries, n).
+    seconds = [
+        np.array([[_timed(q, X_WA) for q in queries.values()] for _ in range(repeats)])
+        for X_WA in make_presses(pair, presses)
+    ]
+    all_s = np.concatenate([typical(of_press) for of_press in seconds], axis=1)
+    medians = dict(zip(queries, (1e6 * np.median(all_s, axis=1)).tolist(), strict=True))
     ours_us = medians.pop("ours")
     outside_us = {library.name: medians.pop(library.name) for library in outside}
     coal_us = min(medians.values())
@@ -82,31 +78,17 @@ def _timed(query: Callable[[np.ndarray], object], X_WA: np.ndarray) -> list[floa
     return seconds
 
 
-def _our_query(pair: PairShape) -> Callable[[np.ndarray], float]:
-    A, B = ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices)
-    bodies = ConvexPair(A, B)
-    X_WB = np.eye(4)
-
-    def query(X_WA: np.ndarray) -> float:
-        return bodies.query(X_WA, X_WB).distance
-
-    return query
-
-
 class CoalQuery:
-    """A pair of hulls in coal's own binding, queried at one pose after the other.
+    """A pair of hulls in coal's binding, queried at successive poses.
 
     Attributes:
         result: The result of coal's last query.
     """
 
     def __init__(self, A_vertices: np.ndarray, B_vertices: np.ndarray, start: str):
-        """Builds the hulls.
+        """Builds the hulls of the moving and the resting body's vertices.
 
-        Args:
-            A_vertices: (n, 3) vertices of the moving body, m.
-            B_vertices: (m, 3) vertices of the resting body, m.
-            start: Start of GJK, a name of `coal.GJKInitialGuess`.
+        The start of GJK is a name of `coal.GJKInitialGuess`.
 
         Raises:
             ImportError: coal is not installed.

@@ -1,11 +1,11 @@
-"""Measures this package and coal on a scene, side by side."""
+"""Measures this package and coal on a scene."""
 
 from __future__ import annotations
 
 import ctypes
 import weakref
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import groupby
 from typing import Protocol
@@ -40,7 +40,7 @@ class SceneQuery(Protocol):
     """A scene in a library, ready to be queried."""
 
     def run(self, X_WT: np.ndarray) -> SceneAnswers:
-        """Answers the poses of the tool, (n, 4, 4), one after the other."""
+        """Answers the poses of the tool, (n, 4, 4), in order."""
         ...
 
 
@@ -67,10 +67,10 @@ class DrakeHapticsScene:
 class CoalScene:
     """A scene in coal, in C++: the tool's pieces in one tree, all others in another.
 
-    A tick poses the tool's pieces, grows their boxes by the tolerance, refits the
-    tool's tree, and takes the signed distance of each pair whose boxes overlap (here
-    faster than coal's own distance traversal). GJK starts from the boxes'
-    centers, the fastest start that needs no memory of a pair.
+    A tick poses the tool's pieces, enlarges their boxes by the tolerance, refits the
+    tool's tree, and computes the signed distance of each pair whose boxes overlap
+    (which is faster here than coal's distance traversal). GJK starts from the boxes'
+    centers, the fastest start without memory of a pair.
     """
 
     def __init__(self, problem: SceneProblem):
@@ -126,18 +126,8 @@ def _native_scene() -> ctypes.CDLL:
 class SceneFigures:
     """Times of one library in one scene.
 
-    Attributes:
-        scene: Name of the scene.
-        library: Name of the library.
-        triangles: Triangles of all meshes.
-        tool_pieces: Convex pieces of the tool.
-        object_pieces: Convex pieces of all objects.
-        objects: Number of the objects.
-        near: Times of the ticks in which all libraries find a contact.
-        all_ticks: Times of all ticks.
-        median_contacts: Pairs of pieces within the tolerance, over the near ticks.
-        max_contacts: Most pairs of pieces within the tolerance at a tick.
-        deepest_m: Largest penetration depth, m.
+    Ticks are near if all libraries find a contact. The median number of contacts, pairs
+    of pieces within the tolerance, is that of near ticks.
     """
 
     scene: str
@@ -160,49 +150,37 @@ def run_scene(
 ) -> list[SceneFigures]:
     """Returns the figures of each library in one scene.
 
-    The libraries take turns on each motion, in rotating order, all in this thread.
-    The first tick of a motion starts from nothing and is left out.
+    The libraries take turns on each motion, in rotating order, in this thread. The
+    first tick of a motion starts cold and is left out.
     """
-    names = list(queries)
-    seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
-    answers: dict[str, list[SceneAnswers]] = {name: [] for name in names}
+    answers: dict[str, list[SceneAnswers]] = {name: [] for name in queries}
     for X_WT in problem.motions:
-        repeated: dict[str, list[np.ndarray]] = {name: [] for name in names}
-        last: dict[str, SceneAnswers] = {}
-        for name in take_turns(names, repeats):
-            last[name] = queries[name].run(X_WT)
-            repeated[name].append(last[name].seconds[1:])
-        for name in names:
-            seconds[name].append(typical(np.array(repeated[name])))
-            answers[name].append(last[name])
-    contacts = {n: _joined(answers[n], "num_contacts") for n in names}
-    near = np.all([contacts[n] > 0 for n in names], axis=0)
-    return [
-        _figures(
-            problem,
-            name,
-            np.concatenate(seconds[name]),
-            near,
-            contacts[name],
-            _joined(answers[name], "nearest_m"),
+        repeated: dict[str, list[SceneAnswers]] = {name: [] for name in queries}
+        for name in take_turns(list(queries), repeats):
+            repeated[name].append(queries[name].run(X_WT))
+        for name, own in repeated.items():
+            seconds = typical(np.array([each.seconds for each in own]))
+            answers[name].append(replace(own[-1], seconds=seconds))
+    joined = {name: _join(own) for name, own in answers.items()}
+    near = np.all([found.num_contacts > 0 for found in joined.values()], axis=0)
+    return [_figures(problem, name, found, near) for name, found in joined.items()]
+
+
+def _join(answers: list[SceneAnswers]) -> SceneAnswers:
+    """Returns the answers of all motions, each without its first tick."""
+    return SceneAnswers(
+        *(
+            np.concatenate([getattr(each, field.name)[1:] for each in answers])
+            for field in fields(SceneAnswers)
         )
-        for name in names
-    ]
-
-
-def _joined(answers: list[SceneAnswers], column: str) -> np.ndarray:
-    return np.concatenate([getattr(a, column)[1:] for a in answers])
+    )
 
 
 def _figures(
-    problem: SceneProblem,
-    library: str,
-    seconds: np.ndarray,
-    near: np.ndarray,
-    contacts: np.ndarray,
-    nearest_m: np.ndarray,
+    problem: SceneProblem, library: str, found: SceneAnswers, near: np.ndarray
 ) -> SceneFigures:
     tool_pieces, object_pieces = problem.num_pieces
+    contacts = found.num_contacts
     return SceneFigures(
         scene=problem.name,
         library=library,
@@ -210,11 +188,11 @@ def _figures(
         tool_pieces=tool_pieces,
         object_pieces=object_pieces,
         objects=len(problem.objects),
-        near=TickTimes.of(seconds[near]),
-        all_ticks=TickTimes.of(seconds),
+        near=TickTimes.of(found.seconds[near]),
+        all_ticks=TickTimes.of(found.seconds),
         median_contacts=float(np.median(contacts[near])) if near.any() else 0.0,
         max_contacts=int(contacts.max(initial=0)),
-        deepest_m=float(max(0.0, -nearest_m.min(initial=0.0))),
+        deepest_m=float(max(0.0, -found.nearest_m.min(initial=0.0))),
     )
 
 

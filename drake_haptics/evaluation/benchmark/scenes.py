@@ -1,4 +1,4 @@
-"""Makes the scenes that are measured: those of the paper's Table 1, and larger ones."""
+"""Makes the scenes of the benchmark: those of the paper's Table 1, and larger ones."""
 
 from __future__ import annotations
 
@@ -31,12 +31,9 @@ _SEARCH_STEP_M = 0.002
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """The queries of a scene, the same for all libraries.
+    """The queries of a scene for all libraries.
 
     Attributes:
-        name: Name of the scene.
-        tool: The tool in convex pieces.
-        objects: The objects in convex pieces.
         X_WO: (k, 4, 4) poses of the objects, at rest.
         motions: Motions of the tool, each (n, 4, 4) poses a millisecond apart.
         tolerance_m: Distance up to which contacts are found, m.
@@ -79,11 +76,11 @@ class SceneAnswers:
 def make_touches(
     tool: Decomposition, target: Decomposition, count: int, seed: int
 ) -> list[np.ndarray]:
-    """Returns motions that touch the object from random sides, the same on every call.
+    """Returns motions that touch the object from random sides, identical on every call.
 
-    In a second the tool comes in from 10 mm off, presses 0.5 mm beyond first touch,
-    slides 10 mm sideways and back while it sways by 0.1 rad, and leaves: below
-    0.1 m/s and 1 rad/s.
+    Within a second the tool approaches from 10 mm away, presses 0.5 mm beyond first
+    touch, slides 10 mm sideways and back while it sways by 0.1 rad, and leaves, all
+    below 0.1 m/s and 1 rad/s.
     """
     rng = np.random.default_rng(seed)
     search = SceneTracker(tool, [target], _SEARCH_STEP_M)
@@ -99,7 +96,7 @@ def _touch(
     R_WT = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
     way_W = unit(rng.normal(size=3))
     side_W = unit(np.cross(way_W, rng.normal(size=3)))
-    # A random point of the tool comes in on a random point of the target.
+    # A random point of the tool approaches a random point of the target.
     p_ToolP, p_WQ = (rng.choice(body.mesh.vertices) for body in (tool, target))
     start_W = p_WQ - R_WT @ p_ToolP
     touch_m = _first_touch(search, R_WT, start_W, way_W, _size(tool) + _size(target))
@@ -113,7 +110,7 @@ def _touch(
     for X, along, s in zip(X_WT, along_m, sway, strict=True):
         R_sway = rotation(way_W, _SWAY_RAD * s)
         X[:3, :3] = R_sway @ R_WT
-        # Swaying turns the tool about the point that comes in.
+        # Swaying turns the tool about that point.
         X[:3, 3] = p_WQ + along * way_W + _SLIDE_M * s * side_W - X[:3, :3] @ p_ToolP
     return X_WT
 
@@ -125,7 +122,7 @@ def _first_touch(
     way_W: np.ndarray,
     far_m: float,
 ) -> float:
-    """Returns the offset along `way_W` where the tool, from afar, touches first, m."""
+    """Returns the offset along `way_W` at which the tool first touches from afar, m."""
     X_WT = np.eye(4)
     X_WT[:3, :3] = R_WT
     along_m = far_m
@@ -150,9 +147,8 @@ def scene_makers(
     Args:
         motions: Number of motions of each scene.
         meshes: Folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
-            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); those that it
-            lacks are replaced by the package's own shapes, and the armadillo is left
-            out without it.
+            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); missing ones are
+            replaced by the package's shapes, except the armadillo.
 
     Raises:
         HapticsError: The folder has none of them.
@@ -193,7 +189,7 @@ def _peg_in_hole(motions: int) -> SceneProblem:
     inside = np.clip(1.5 * np.sin(phase / 2), 0, 1)
     ways = []
     for k in range(motions):
-        # Down through the hole, once round its wall 0.2 mm deep, and up again. The
+        # Down through the hole, once around its wall 0.2 mm deep, and up again. The
         # hole is 44 mm wide, the peg 24 mm.
         X = np.tile(np.eye(4), (len(phase), 1, 1))
         aside_m = 0.0102 * np.clip(3 * inside - 2, 0, 1)

@@ -1,8 +1,8 @@
-"""Compiles the adapters in `native/`, so that compiled peers run without Python.
+"""Compiles the adapters in `native/`, which run compiled libraries without Python.
 
-Between two calls from Python the interpreter empties the caches and the branch
-predictors, which doubled a fast query here. In a loop of its own, a library is
-measured as a compiled program uses it.
+Between calls from Python the interpreter flushes caches and branch predictors, which
+doubled the time of a fast query. In a compiled loop a library is measured as a compiled
+program uses it.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ _SOURCES = Path(__file__).parent / "native"
 
 
 class NativeBuildError(HapticsError):
-    """There is no C++ compiler, or it cannot build an adapter."""
+    """There is no C++ compiler, or it failed to build an adapter."""
 
 
 def load_coal_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
     """Compiles and loads an adapter of coal.
 
     Args:
-        name: Name of the adapter, with which the names of its functions begin.
+        name: Name of the adapter, a prefix of its functions.
         functions: Types of the arguments of each function, by the rest of its name;
             `new` returns a handle, which `delete` takes.
 
@@ -65,9 +65,9 @@ def load_coal_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
 
 
 def load_mujoco_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
-    """Compiles and loads an adapter of MuJoCo, see `load_coal_native`.
+    """Compiles and loads an adapter of MuJoCo; see `load_coal_native`.
 
-    Its `new` is called by `open_mjcf`.
+    `open_mjcf` calls its `new`.
     """
     import mujoco
 
@@ -101,7 +101,7 @@ def add_pieces(
     decomposition: Decomposition,
     X_WO: np.ndarray,
 ) -> None:
-    """Hands convex pieces to a scene in an adapter of coal."""
+    """Adds convex pieces to a scene in an adapter of coal."""
     for piece in decomposition.pieces:
         vertices = np.ascontiguousarray(piece.vertices)
         fans = [
@@ -128,7 +128,7 @@ def _declare(
 def _load_native(
     name: str, include: Sequence[Path], libraries: Sequence[Path]
 ) -> ctypes.CDLL:
-    """Compiles `native/<name>.cc`, unless that was done before, and loads it."""
+    """Compiles `native/<name>.cc`, unless it is cached, and loads it."""
     compiler = os.environ.get("CXX") or next(
         filter(None, map(shutil.which, ("c++", "g++", "clang++"))), None
     )
@@ -152,7 +152,7 @@ def _load_native(
 
 
 def _target(name: str, command: Sequence[str]) -> Path:
-    """Returns where the result is kept; each change of sources or command moves it."""
+    """Returns the cached file, whose name depends on sources and command."""
     digest = hashlib.sha256("\0".join(command).encode())
     for source in sorted(_SOURCES.iterdir()):
         if source.is_file():

@@ -1,4 +1,4 @@
-"""Gives convex pieces to other simulators, Drake and MuJoCo, and keeps them quiet."""
+"""Converts convex pieces for Drake and MuJoCo, and silences their output."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ from pydrake.multibody.tree import RigidBody
 from drake_haptics._core import ConvexPolytope
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
-# Penetration at which the contact's damping has the given value: Hunt and Crossley's
-# grows with it, m.
+# Penetration at which the contact's damping has the given value, m, since Hunt and
+# Crossley's is proportional to it.
 _TYPICAL_DEPTH_M = 5e-4
-# MuJoCo takes no flat mesh: a flat piece gets this thickness, on its inner side, m.
+# Thickness that a flat piece gets on its inner side, m, since MuJoCo refuses flat
+# meshes.
 THICKNESS_M = 2e-5
 
 
@@ -38,7 +39,7 @@ def register_pieces(
     decomposition: Decomposition,
     surface: ProximityProperties,
 ) -> None:
-    """Adds each piece to a body, flat ones as they are.
+    """Adds each piece to a body, including flat ones.
 
     Args:
         plant: Plant that is not yet finalized.
@@ -54,7 +55,7 @@ def register_pieces(
 
 
 def to_drake_mesh(part: Decomposition) -> Mesh:
-    """Returns the mesh that was cut as a mesh of Drake, without a file."""
+    """Returns the decomposed mesh as an in-memory `Mesh` of Drake."""
     lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in part.mesh.vertices]
     lines += [f"f {a} {b} {c}" for a, b, c in (part.mesh.triangles + 1).tolist()]
     file = MemoryFile("\n".join(lines) + "\n", ".obj", "mesh")
@@ -64,7 +65,7 @@ def to_drake_mesh(part: Decomposition) -> Mesh:
 def make_surface(
     stiffness_N_per_m: float, damping_Ns_per_m: float
 ) -> ProximityProperties:
-    """Returns a material with these gains where two surfaces of it touch."""
+    """Returns a material whose contact with itself has these gains."""
     properties = ProximityProperties()
     AddContactMaterial(
         dissipation=damping_Ns_per_m / (stiffness_N_per_m * _TYPICAL_DEPTH_M),
@@ -78,9 +79,9 @@ def make_surface(
 
 @contextmanager
 def quiet_streams(*streams: int) -> Iterator[None]:
-    """Drops what its block writes to these streams of the process.
+    """Discards output of its block to streams of the process.
 
-    A library then does not write on the terminal, where a progress bar is.
+    It keeps libraries from writing over a progress bar.
 
     Args:
         streams: Numbers of the streams: 1 for standard output, 2 for standard error.
@@ -94,7 +95,7 @@ def quiet_streams(*streams: int) -> Iterator[None]:
         yield
     finally:
         sys.stderr.flush()
-        # Text that C still buffers is dropped too.
+        # Text in C's buffers is discarded, too.
         ctypes.CDLL(None).fflush(None)
         for stream, own in zip(streams, kept, strict=True):
             os.dup2(own, stream)
@@ -119,7 +120,7 @@ def mesh_geoms(name: str, decomposition: Decomposition, attributes: str) -> str:
 
 
 def listed(numbers: np.ndarray) -> str:
-    """Returns numbers as an attribute, each exactly."""
+    """Returns the exact text of numbers for an attribute."""
     return " ".join(f"{x:.17g}" for x in np.ravel(numbers))
 
 

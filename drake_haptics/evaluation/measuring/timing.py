@@ -1,4 +1,4 @@
-"""Measures and sums up times, and describes the machine."""
+"""Measures and summarizes times, and describes the machine."""
 
 from __future__ import annotations
 
@@ -25,34 +25,29 @@ _TRIVIAL_CALLS = 2000
 
 @cache
 def clock_interval() -> float:
-    """Returns the seconds between two readings of the compiled clock in succession.
+    """Returns the time between successive readings of the compiled clock, s.
 
-    Libraries that time themselves include it in each figure; it is taken off.
+    It is subtracted from the figures of libraries that time themselves.
     """
     return _core.clock_interval()
 
 
 class CallTimer:
-    """Times calls of one bound function, less the time of a trivial call.
+    """Times calls of a bound function, minus the time of a trivial call.
 
     This subtracts the binding, the clock and the trivial work itself, which favors the
     library a little.
     """
 
     def __init__(self, function: Callable[..., Any], trivial: tuple[Any, ...]):
-        """Measures the trivial call.
-
-        Args:
-            function: The bound function.
-            trivial: Arguments with which it has next to nothing to do.
-        """
+        """Times the function with trivial arguments."""
         self._function = function
         self._trivial_s = 0.0
         costs = [self.call(trivial)[1] for _ in range(_TRIVIAL_CALLS)]
         self._trivial_s = float(np.median(costs))
 
     def call(self, arguments: tuple[Any, ...]) -> tuple[Any, float]:
-        """Returns what the function returns, and the seconds it took."""
+        """Returns the result of the function, and its time, s."""
         start = time.perf_counter()
         result = self._function(*arguments)
         return result, time.perf_counter() - start - self._trivial_s
@@ -60,14 +55,7 @@ class CallTimer:
 
 @dataclass(frozen=True)
 class TickTimes:
-    """Median and percentiles of the times of ticks.
-
-    Attributes:
-        ticks: Number of the ticks.
-        median_us: Median, µs.
-        p99_us: 99th percentile, µs.
-        p99_9_us: 99.9th percentile, µs.
-    """
+    """Median and percentiles of the times of a number of ticks."""
 
     ticks: int
     median_us: float
@@ -76,7 +64,7 @@ class TickTimes:
 
     @staticmethod
     def of(seconds: np.ndarray) -> TickTimes:
-        """Sums up (n,) times of ticks, s; NaN where there are none."""
+        """Summarizes (n,) times of ticks, s; NaN without ticks."""
         percentiles_us = (
             1e6 * np.percentile(seconds, [50, 99, 99.9])
             if len(seconds)
@@ -86,10 +74,10 @@ class TickTimes:
 
 
 def typical(seconds: np.ndarray) -> np.ndarray:
-    """Returns the time of each frame when nothing disturbs it.
+    """Returns the undisturbed time of each frame.
 
-    It is the mean of the middle half of the repeats: interruptions fall out, and the
-    clock's ticks, which are a tenth of a fast query here, average out.
+    It is the mean of the middle half of the repeats, which drops interruptions and
+    averages over the clock's resolution, a tenth of a fast query.
 
     Args:
         seconds: (repeats, n) times of the same frames, s.
@@ -103,9 +91,9 @@ def typical(seconds: np.ndarray) -> np.ndarray:
 
 
 def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:
-    """Yields each name `repeats` times, in turns that each begin at another name.
+    """Yields each name `repeats` times, in turns that begin at different names.
 
-    A disturbance of the machine then affects all alike.
+    Disturbances of the machine then affect all alike.
     """
     for repeat in range(repeats):
         for turn in range(len(names)):
@@ -114,7 +102,7 @@ def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:
 
 @contextmanager
 def steady_memory() -> Iterator[None]:
-    """Keeps earlier garbage from being collected while its block is timed."""
+    """Prevents garbage collection while its block is timed."""
     gc.collect()
     gc.freeze()
     try:
@@ -143,7 +131,7 @@ def name_machine(machine: Mapping[str, str | int]) -> str:
 
 
 def _processor() -> str:
-    """Returns the processor's name, or "unknown" if the system does not tell it."""
+    """Returns the processor's name, or "unknown"."""
     info = Path("/proc/cpuinfo")
     if info.exists():
         for line in info.read_text(encoding="utf-8").splitlines():

@@ -1,7 +1,6 @@
 """Counts the instructions of a part of a Python program.
 
-No other program disturbs such a count. The rest of the program is run but not counted,
-so that importing and building do not blur the count.
+Other programs do not disturb the count, and the rest of the program is not counted.
 """
 
 from __future__ import annotations
@@ -35,9 +34,9 @@ def require_valgrind() -> None:
 
 
 def count_instructions(arguments: Sequence[str]) -> int:
-    """Runs this Python with these arguments and counts what `counted` encloses.
+    """Runs Python with arguments and counts the instructions within `counted`.
 
-    The count includes turning it on and off, some 6e5 instructions.
+    The count includes some 6e5 instructions for switching it on and off.
 
     Raises:
         subprocess.CalledProcessError: The program failed.
@@ -51,7 +50,7 @@ def count_instructions(arguments: Sequence[str]) -> int:
 
 
 def count_with_data(module: str, data: Any) -> int:
-    """Counts a module that is run with a file of data, which it reads by `read_data`.
+    """Counts a module that runs with data, which it reads by `read_data`.
 
     Raises:
         subprocess.CalledProcessError: The program failed.
@@ -64,12 +63,12 @@ def count_with_data(module: str, data: Any) -> int:
 
 
 def read_data() -> Any:
-    """Returns the data that `count_with_data` has handed to this program."""
+    """Returns the data that `count_with_data` has passed to this program."""
     return pickle.loads(Path(sys.argv[1]).read_bytes())
 
 
 def run_callgrind(arguments: Sequence[str], profile: str) -> str:
-    """Runs this Python under callgrind, which writes a profile; returns its messages.
+    """Runs Python under callgrind, which writes a profile, and returns its messages.
 
     Raises:
         subprocess.CalledProcessError: The program failed.
@@ -94,6 +93,6 @@ def counted() -> Iterator[None]:
 
 
 def _switch(state: str) -> None:
-    """Switches the count of the valgrind that this program runs under."""
+    """Switches the count of valgrind, under which this program runs."""
     command = ["callgrind_control", "-i", state, str(os.getpid())]
     subprocess.run(command, capture_output=True, check=True)

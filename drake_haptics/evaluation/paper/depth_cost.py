@@ -1,7 +1,7 @@
-"""Measures the cost of a penetration depth over the triangles of the bodies (6.3).
+"""Measures the cost of a penetration depth over the bodies' triangles (6.3).
 
 `python -m drake_haptics.evaluation.paper.depth_cost FILE` is the program whose
-instructions are counted: it moves a pair as FILE says.
+instructions are counted; it moves a pair along the motion in FILE.
 """
 
 from __future__ import annotations
@@ -37,32 +37,32 @@ def count_depths(
 ) -> dict[int, float] | None:
     """Counts the instructions of each query of a motion, by valgrind.
 
-    The count of a pair of points far from each other is subtracted: switching the count
-    on and off, checking poses and reading the clock.
+    The count for a pair of distant points is subtracted: that of switching the count,
+    checking poses and reading the clock.
 
     Args:
-        motions: Pairs and the poses X_WA (n, 4, 4) of A, by some number.
+        motions: Pairs and the poses X_WA (n, 4, 4) of A, by number.
 
     Returns:
-        Mean per query, warm, by the same number; None without valgrind.
+        Mean per warm query, by the same number; None without valgrind.
 
     Raises:
-        subprocess.CalledProcessError: The program that is counted failed.
-        RuntimeError: valgrind counted nothing.
+        subprocess.CalledProcessError: The program failed. RuntimeError: valgrind
+        counted nothing.
     """
     if shutil.which("valgrind") is None:
         return None
-    # All have as many queries, so that the same count is subtracted from each.
+    # The same number of queries, so that the same count is subtracted from each.
     queries = min(len(X_WA) for _, X_WA in motions.values())
     apart = np.tile(np.eye(4), (2 * queries, 1, 1))
     apart[:, 0, 3] = 1.0
     point = np.zeros((1, 3))
     jobs = [(point, point, apart)]
     for pair, X_WA in motions.values():
-        # There and back, so that each query is near the last one.
+        # Forth and back, so that each query is near the last one.
         there_and_back = np.concatenate([X_WA[:queries], X_WA[:queries][::-1]])
         jobs.append((pair.A_vertices, pair.B_vertices, there_and_back))
-    # Programs that run at the same time do not change the counts.
+    # Counts are independent of other programs.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         base, *counts = pool.map(partial(count_with_data, __name__), jobs)
     return {
@@ -72,7 +72,7 @@ def count_depths(
 
 
 def main() -> None:
-    """Moves a pair as a file says, and counts all passes but a first one."""
+    """Moves a pair along the motion in a file, and counts all passes but the first."""
     A, B, X_WA = read_data()
     pair = ConvexPair(ConvexPolytope(A), ConvexPolytope(B))
     pair.query_trajectory(X_WA, np.eye(4))
@@ -87,14 +87,9 @@ if __name__ == "__main__":
 
 @dataclass(frozen=True)
 class DepthCost:
-    """The cost of a depth of a pair of convex bodies.
+    """The cost of a depth of two convex bodies with equally many triangles.
 
-    Attributes:
-        triangles: Triangles of each body.
-        queries: Number of queries that were timed, warm.
-        median_us: Median of their times, µs.
-        p99_us: 99th percentile of their times, µs.
-        instructions: Mean instructions of a query; None if they were not counted.
+    Queries are warm. Instructions are the mean; None if they were not counted.
     """
 
     triangles: int
@@ -106,14 +101,7 @@ class DepthCost:
 
 @dataclass(frozen=True)
 class DepthCosts:
-    """The cost of one depth over the size of the bodies.
-
-    Attributes:
-        rows: Rows in order of triangles.
-        growth: Growth of the median time with the triangles.
-        instruction_growth: Growth of the instructions with the triangles; None if they
-            were not counted.
-    """
+    """The cost of one depth over triangles, and the growth of its median time."""
 
     rows: tuple[DepthCost, ...]
     growth: PowerFit
@@ -132,11 +120,11 @@ class DepthCosts:
 def measure_depth_costs(
     presses: int, with_instructions: bool, progress: Callable[[str, float], None]
 ) -> DepthCosts:
-    """Measures the depth of pairs of round bodies, each query warm.
+    """Measures warm depth queries of pairs of round bodies.
 
     Args:
-        presses: Presses of each pair: from outside to 20 % deep and out again, in some
-            direction at a hand's speed.
+        presses: Number of presses of each pair, from outside to 20 % deep and back at a
+            hand's speed.
         with_instructions: Whether to count instructions, if valgrind is installed.
         progress: Callback that takes the current work and the share done, in [0, 1].
     """
@@ -157,28 +145,26 @@ def measure_depth_costs(
     return DepthCosts(
         rows=tuple(rows),
         growth=fit_power(sizes, np.array([row.median_us for row in rows])),
-        instruction_growth=(
-            None
-            if counts is None
-            else fit_power(sizes, np.array([counts[n] for n in sizes]))
-        ),
+        instruction_growth=None
+        if counts is None
+        else fit_power(sizes, np.array([counts[n] for n in sizes])),
     )
 
 
 def make_balls(triangles: int) -> PairShape:
-    """Returns two balls of that many triangles, the second one slightly smaller.
+    """Returns two balls with a number of triangles, the second one slightly smaller.
 
     Args:
-        triangles: Triangles of each ball, an even number of at least 4: the hull of n
-            vertices that a spiral spreads on a sphere has 2 n - 4 triangles, no two of
-            them in a plane.
+        triangles: Number of triangles of each ball, even and at least 4: the hull of n
+            vertices on a spiral around a sphere has 2 n - 4 triangles, none of them
+            coplanar.
     """
     count = triangles // 2 + 2
     height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
     angle = _GOLDEN_ANGLE * np.arange(count)
     across = np.sqrt(1.0 - height**2)
     unit = np.column_stack([across * np.cos(angle), across * np.sin(angle), height])
-    # The axes are swapped, so that no facet has more than three corners by symmetry.
+    # Swapped axes, so that no facet has more than three corners by symmetry.
     B = unit[:, [1, 2, 0]]
     return PairShape("ball", count, RADIUS_M * unit, 0.9 * RADIUS_M * B)
 

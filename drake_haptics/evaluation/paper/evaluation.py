@@ -1,4 +1,4 @@
-"""Repeats the paper's evaluation, all parts of it or some."""
+"""Repeats the paper's evaluation, all of it or some parts."""
 
 from __future__ import annotations
 
@@ -30,23 +30,14 @@ Part = Literal["table1", "figure11", "figure12", "analysis"]
 PARTS: tuple[Part, ...] = get_args(Part)
 Progress = Callable[[str, float], None]
 
-# Approximate relative durations of the parts, for the progress that is shown.
+# Approximate relative durations of the parts, for progress.
 _WEIGHTS = {"table1": 1.0, "figure11": 6.0, "figure12": 1.0, "analysis": 3.0}
 _FINE_DIVISIONS = 5
 
 
 @dataclass(frozen=True)
 class Effort:
-    """The extent of a measurement.
-
-    Attributes:
-        profile_s: Duration of each path of Figure 11, s; None for all of it.
-        pen_s: Duration of the pen's pass, s.
-        presses: Presses of each pair whose depth is timed.
-        slide_ticks: Ticks of each motion of a brush.
-        force_repeats: Repeats of each force computation.
-        instructions: Whether to count the instructions of a depth.
-    """
+    """The extent of a measurement; None runs the whole paths of Figure 11."""
 
     profile_s: float | None = None
     pen_s: float = 3.0
@@ -68,12 +59,7 @@ QUICK = Effort(
 
 @dataclass(frozen=True)
 class Run:
-    """A run of a scenario of Figure 11.
-
-    Attributes:
-        profile: Profile of the run, tick by tick.
-        figures: Figures of the profile.
-    """
+    """A run of a scenario of Figure 11, tick by tick and summarized."""
 
     profile: Profile
     figures: ProfileFigures
@@ -81,13 +67,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Analysis:
-    """The figures of section 6.3.
-
-    Attributes:
-        depths: Cost of a depth over triangles.
-        pairs: Cost of a query over pairs.
-        forces: Cost of force computation over contacts, for each way of clustering.
-    """
+    """The figures of section 6.3, with forces for each kind of clustering."""
 
     depths: DepthCosts
     pairs: PairScaling
@@ -96,16 +76,11 @@ class Analysis:
 
 @dataclass(frozen=True)
 class PaperEvaluation:
-    """All figures; empty or None where a part was not asked for.
+    """All figures; empty or None for parts that were not requested.
 
-    Attributes:
-        machine: Machine that took the times, see
-            `drake_haptics.evaluation.measuring.timing.describe_machine`.
-        table1: Rows of Table 1.
-        figure11: Runs, those of the paper first.
-        figure12: Passes of the pen over a coarse and a fine sphere.
-        analysis: Figures of section 6.3.
-        is_cut_short: Whether only the beginnings of Figure 11's paths were run.
+    The machine is that of `describe_machine`. Runs like the paper's come first. The pen
+    passes over a coarse and a fine sphere. If it is cut short, only the beginnings of
+    Figure 11's paths were run.
     """
 
     machine: dict[str, str | int]
@@ -119,11 +94,8 @@ class PaperEvaluation:
         """Returns the figures, without the curves, ready for JSON."""
         analysis = None
         if self.analysis is not None:
-            analysis = {
-                "depths": self.analysis.depths.to_dict(),
-                "pairs": asdict(self.analysis.pairs),
-                "forces": [asdict(forces) for forces in self.analysis.forces],
-            }
+            depths = self.analysis.depths.to_dict()
+            analysis = {**asdict(self.analysis), "depths": depths}
         return {
             "machine": self.machine,
             "is_cut_short": self.is_cut_short,
@@ -146,8 +118,8 @@ def evaluate_paper(
         parts: Parts to measure. Defaults to all.
         effort: Extent of the measurement. Defaults to `Effort()`.
         meshes: Folder of real meshes (torus_2000.obj, cup_500.obj, spoon_336.obj,
-            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply), as many as
-            there are.
+            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply), any of which may
+            be missing.
         progress: Callback that takes the current work and the share done, in [0, 1].
 
     Raises:

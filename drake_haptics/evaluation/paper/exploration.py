@@ -22,7 +22,7 @@ from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 
-# Pace of a hand that explores with a tool.
+# Speed of a hand that explores with a tool.
 _SPEED_M_S = 0.10
 _TURN_RAD_S = 1.0
 _SHORTEST_S = 0.06
@@ -34,11 +34,11 @@ _MAX_FORCE_N, _MAX_TORQUE_NM = 8.5, 0.515
 
 @dataclass(frozen=True)
 class Place:
-    """A place at which the tool comes in, and the hand's aim beyond first touch.
+    """A place at which the tool approaches, and the hand's aim beyond first touch.
 
     Attributes:
-        X_WT: Pose of the tool before it comes in, free of contact.
-        toward_W: (3,) unit direction in which it comes in.
+        X_WT: Pose of the tool before the approach, free of contact.
+        toward_W: (3,) unit direction of the approach.
         press_m: Distance beyond first touch at which the hand aims, m; negative to stay
             off.
     """
@@ -54,19 +54,13 @@ def plan_exploration(
     places: Sequence[Place],
     reach_m: float,
 ) -> HandPath:
-    """Plans a path of the hand through places, at a hand's pace.
+    """Returns a path X_WT through one or more places, at a hand's speed.
 
-    Args:
-        tool: Pieces of the tool.
-        objects: Objects at rest.
-        places: Places in their order, at least one.
-        reach_m: Distance that the tool may travel before it touches, m.
-
-    Returns:
-        Path X_WT over time, below about 0.15 m/s and 1.5 rad/s.
+    It stays below about 0.15 m/s and 1.5 rad/s. The tool may travel `reach_m` before it
+    touches an object; objects are at rest.
 
     Raises:
-        ValueError: The tool begins in contact at a place, or passes by the objects.
+        ValueError: The tool begins in contact at a place, or misses the objects.
     """
     search = SceneTracker(tool, [o.decomposition for o in objects], _SEARCH_STEP_M)
     for i, item in enumerate(objects):
@@ -101,17 +95,13 @@ def _press(search: SceneTracker, place: Place, reach_m: float) -> RigidTransform
 
 @dataclass(frozen=True)
 class Scenario:
-    """A tool, the objects it meets, and the path on which a hand leads it.
+    """A tool, the objects that it meets, and the path of the hand.
 
     Attributes:
-        name: Name of the scenario.
-        figure: Chart of the paper that is like it, such as "11-(a)"; empty if none is.
-        tool: Pieces of the tool, in its frame T.
-        mass_kg: Mass of the tool, kg.
+        figure: Corresponding chart of the paper, such as "11-(a)"; empty if there is
+            none.
         p_TH: (3,) position of the handle in the tool's frame, m.
-        objects: Objects that the tool meets, at rest.
         path: Path of the poses at which the hand aims the tool.
-        contact: Tolerance, clustering and gains.
     """
 
     name: str
@@ -125,10 +115,9 @@ class Scenario:
 
 
 def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
-    """Builds the whole loop of a scenario around a handle that its path leads.
+    """Builds the loop of a scenario with a handle that follows its path.
 
-    The handle does not yield, as in a firm hand; the coupling between it and the tool
-    does.
+    The handle does not yield, as in a firm hand, but the coupling does.
     """
     X_TH = RigidTransform(scenario.p_TH)
     X_WH, V_WH = sample_handle(scenario.path, X_TH, seconds)
@@ -152,7 +141,7 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
         X_HT=X_TH.inverse(),
         X_WT=scenario.path.start,
         period_s=PERIOD_S,
-        in_one_call=False,  # query and force are timed apart
+        in_one_call=False,  # query and force are timed separately
     )
     return HapticDiagram(
         diagram=builder.Build(),
@@ -168,15 +157,10 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
 def sample_handle(
     path: HandPath, X_TH: RigidTransform, seconds: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the handle's motion tick by tick while it leads the tool along a path.
-
-    Args:
-        path: Path X_WT over time.
-        X_TH: Pose of the handle in the tool's frame.
-        seconds: Duration of the motion, s.
+    """Returns the handle's motion along a path.
 
     Returns:
-        Poses X_WH (n, 7) and velocities V_WH (n, 6).
+        Poses X_WH (n, 7) and velocities V_WH (n, 6), tick by tick.
     """
     ticks = round(seconds / PERIOD_S) + 1
     X_WH, V_WH = np.empty((ticks, 7)), np.empty((ticks, 6))

@@ -5,17 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import linregress
 
 
 @dataclass(frozen=True)
 class LineFit:
     """y = intercept + slope x, by least squares.
 
-    Attributes:
-        slope: Slope in y's unit per x's.
-        intercept: Intercept in y's unit.
-        r_squared: Share of y's variance that the line explains, at most 1.
+    R² is the share of y's variance that the line explains.
     """
 
     slope: float
@@ -25,13 +21,7 @@ class LineFit:
 
 @dataclass(frozen=True)
 class PowerFit:
-    """y = factor x ** exponent, by least squares of the logarithms.
-
-    Attributes:
-        exponent: Exponent; below 1, y grows less than in proportion to x.
-        factor: Factor in y's unit.
-        r_squared: Share of the variance of y's logarithm that the line explains.
-    """
+    """y = factor x ** exponent, by a least-squares line of the logarithms."""
 
     exponent: float
     factor: float
@@ -39,25 +29,28 @@ class PowerFit:
 
 
 def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
-    """Fits a line to two points or more.
+    """Fits a line to two or more points.
 
     Raises:
-        ValueError: There are fewer than two different x.
+        ValueError: There are fewer than two distinct x.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(np.unique(x)) < 2:
         raise ValueError(f"x must have two different values or more, is {x}")
+    # Imported here, because under valgrind it takes seconds.
+    from scipy.stats import linregress
+
     found = linregress(x, y)
-    # A constant y has no correlation, and is explained fully.
+    # A constant y has no correlation, and is fully explained.
     r_squared = 1.0 if np.ptp(y) == 0.0 else found.rvalue**2
     return LineFit(float(found.slope), float(found.intercept), float(r_squared))
 
 
 def fit_power(x: np.ndarray, y: np.ndarray) -> PowerFit:
-    """Fits a power to two points or more.
+    """Fits a power to two or more points.
 
     Raises:
-        ValueError: A value is not positive, or there are fewer than two different x.
+        ValueError: A value is not positive, or there are fewer than two distinct x.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if not ((x > 0.0).all() and (y > 0.0).all()):

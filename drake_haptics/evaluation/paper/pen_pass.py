@@ -1,14 +1,14 @@
-"""Follows the contact of a pen that passes over a sphere, in and out (Figure 12)."""
+"""Follows the contact of a pen that passes over a sphere (Figure 12)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from typing import Any, Literal
 
 import numpy as np
 import trimesh
+from trimesh.triangles import closest_point
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.evaluation.benchmark.pairs import rotation, unit
@@ -23,7 +23,7 @@ _SECONDS = 3.0
 _RATE_HZ = 1000.0
 _ARC_RAD = 2.0
 _TILT_RAD = 0.6
-# The tip is 1.5 mm off and 2.5 mm deep in turn.
+# The tip alternates between 1.5 mm outside and 2.5 mm deep.
 _MIDDLE_M, _SWING_M = -0.0005, 0.0020
 
 
@@ -32,7 +32,7 @@ class ContactCurves:
     """One contact, tick by tick.
 
     Attributes:
-        distance_m: (n,) signed distances, negative where the bodies penetrate, m.
+        distance_m: (n,) signed distances, negative in penetration, m.
         nhat_BA_W: (n, 3) unit normals out of the sphere into the pen.
         p_WC: (n, 3) means of both witness points, m.
     """
@@ -48,7 +48,7 @@ def calc_sphere_contact(
     """Calculates the contact of a convex body and a sphere about the world's origin.
 
     While the sphere's center is outside the body, the signed distance is that of the
-    center from the body less the radius, disjoint and penetrating alike.
+    center from the body minus the radius, even in penetration.
 
     Args:
         vertices: (v, 3) vertices of the body, in its frame A, m.
@@ -60,7 +60,7 @@ def calc_sphere_contact(
     nearest_W = np.empty((len(X_WA), 3))
     for k, X in enumerate(X_WA):
         p_ACenter = -X[:3, :3].T @ X[:3, 3]
-        points = _find_nearest(corners, p_ACenter)
+        points = closest_point(corners, np.tile(p_ACenter, (len(corners), 1)))
         nearest_A = points[np.linalg.norm(points - p_ACenter, axis=1).argmin()]
         nearest_W[k] = X[:3, :3] @ nearest_A + X[:3, 3]
     far_m = np.linalg.norm(nearest_W, axis=1)
@@ -72,46 +72,13 @@ def calc_sphere_contact(
     )
 
 
-def _find_nearest(corners: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Returns the point of each triangle (t, 3, 3) that is nearest to p (3,).
-
-    It is p's projection on the plane if that is inside the triangle, else the nearest
-    of its projections on the three sides.
-    """
-    a, b, c = np.swapaxes(corners, 0, 1)
-    normal = np.cross(b - a, c - a)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    foot = p - np.einsum("ti,ti->t", p - a, normal)[:, None] * normal
-    inside = np.ones(len(a), dtype=bool)
-    best = a
-    best_m = np.full(len(a), np.inf)
-    for start, end in ((a, b), (b, c), (c, a)):
-        side = end - start
-        inside &= np.einsum("ti,ti->t", np.cross(side, foot - start), normal) >= 0.0
-        share = np.einsum("ti,ti->t", p - start, side) / (side**2).sum(axis=1)
-        on_side = start + np.clip(share, 0.0, 1.0)[:, None] * side
-        far_m = np.linalg.norm(on_side - p, axis=1)
-        best = np.where((far_m < best_m)[:, None], on_side, best)
-        best_m = np.minimum(best_m, far_m)
-    return np.where(inside[:, None], foot, best)
-
-
 @dataclass(frozen=True)
 class Smoothness:
-    """Steps from tick to tick beyond those of the truth, and errors.
+    """Largest steps from tick to tick beyond those of the truth, and largest errors.
 
-    A step is the change of a value from one tick to the next. The motion explains the
-    step of the truth; steps here are differences from it, except those of the truth.
-
-    Attributes:
-        point_step_m: Largest step of the contact point, m.
-        normal_step_deg: Largest step of the normal, degrees.
-        distance_step_m: Largest step of the distance, m.
-        crossing_step_m: Largest step of the distance where it changes its sign, m.
-        normal_error_deg: Largest angle between the normal and the true one, degrees.
-        distance_error_m: Largest error of the distance, m.
-        true_normal_step_deg: Largest step of the true normal, degrees.
-        true_distance_step_m: Largest step of the true distance, m.
+    A step is the change of a value from one tick to the next, minus the step of the
+    truth, which the motion explains. A crossing is a step in which the distance changes
+    sign.
     """
 
     point_step_m: float
@@ -125,7 +92,7 @@ class Smoothness:
 
 
 def measure_smoothness(curves: ContactCurves, truth: ContactCurves) -> Smoothness:
-    """Compares the curves of two ticks or more with the truth."""
+    """Compares the curves of two or more ticks with the truth."""
     off_m = curves.distance_m - truth.distance_m
     steps_m = np.abs(np.diff(off_m))
     inside = curves.distance_m < 0.0
@@ -145,15 +112,12 @@ def measure_smoothness(curves: ContactCurves, truth: ContactCurves) -> Smoothnes
 
 
 def _largest_step(values: np.ndarray) -> float:
-    """Returns the largest change of (n, 3) vectors from one to the next."""
+    """Returns the largest change between successive (n, 3) vectors."""
     return float(np.linalg.norm(np.diff(values, axis=0), axis=1).max())
 
 
 def _degrees(angle_rad: float) -> float:
     return float(np.rad2deg(angle_rad))
-
-
-_Follow = Callable[[Mesh, Mesh, np.ndarray], ContactCurves]
 
 
 @dataclass(frozen=True)
@@ -162,13 +126,12 @@ class PenPass:
 
     Attributes:
         time_s: (n,) time of each tick, s.
-        triangles: Triangles of the polyhedron that stands for the sphere.
+        triangles: Number of triangles of the polyhedron that approximates the sphere.
         corner_deg: Largest angle between its neighboring faces, degrees.
         truth: Curves on a perfect sphere.
         curves: Curves by library; this package's under `OURS`.
         smoothness: Smoothness by library.
-        exact: Smoothness of the exact depth of the two polyhedra, which no query can
-            better.
+        exact: Smoothness of the exact depth of the two polyhedra.
     """
 
     time_s: np.ndarray
@@ -193,8 +156,8 @@ class PenPass:
 def plan_pen_pass(seconds: float = _SECONDS) -> np.ndarray:
     """Returns X_WA (n, 4, 4), the pen's poses a millisecond apart.
 
-    Its tip runs over the sphere in an arc, rising and falling through its surface,
-    while the pen leans to one side and the other.
+    Its tip moves over the sphere in an arc, rising and falling through its surface,
+    while the pen leans from side to side.
     """
     phase = np.linspace(0.0, 1.0, round(seconds * _RATE_HZ))
     X_WA = np.tile(np.eye(4), (len(phase), 1, 1))
@@ -213,11 +176,11 @@ def plan_pen_pass(seconds: float = _SECONDS) -> np.ndarray:
 
 
 def measure_pen_pass(divisions: int = 3, seconds: float = _SECONDS) -> PenPass:
-    """Follows the contact of the package's pen and a sphere along a pass.
+    """Follows the contact of the package's pen with a sphere along a pass.
 
     Args:
-        divisions: Number of times that each triangle of an icosahedron is divided into
-            four to make the sphere; 3 make the shipped one.
+        divisions: Number of subdivisions of an icosahedron that make the sphere; 3 for
+            the shipped one.
         seconds: Duration of the pass, s.
     """
     pen = load_shape("pen")
@@ -225,9 +188,9 @@ def measure_pen_pass(divisions: int = 3, seconds: float = _SECONDS) -> PenPass:
     sphere = Mesh.from_arrays(np.round(ball.vertices, 9), ball.faces)
     X_WA = plan_pen_pass(seconds)
     truth = calc_sphere_contact(pen.vertices, pen.triangles, X_WA, RADIUS_M)
-    curves = {
-        name: follow(pen, sphere, X_WA) for name, follow in _find_libraries().items()
-    }
+    curves = {OURS: _follow(pen, sphere, X_WA)}
+    if find_spec("coal") is not None:
+        curves["coal"] = _follow_with_coal(pen, sphere, X_WA)
     return PenPass(
         time_s=np.arange(len(X_WA)) / _RATE_HZ,
         triangles=len(sphere.triangles),
@@ -245,15 +208,13 @@ def _follow(
     X_WA: np.ndarray,
     depth: Literal["tracked", "global"] = "tracked",
 ) -> ContactCurves:
-    """Returns this package's answers."""
     A, B = (ConvexPolytope(body.vertices) for body in (pen, sphere))
-    pair = ConvexPair(A, B, depth)
-    found = pair.query_trajectory(X_WA, np.eye(4))
+    found = ConvexPair(A, B, depth).query_trajectory(X_WA, np.eye(4))
     return ContactCurves(found.distance, found.nhat_BA_W, found.p_WC)
 
 
 def _follow_with_coal(pen: Mesh, sphere: Mesh, X_WA: np.ndarray) -> ContactCurves:
-    """Returns coal's answers, each query warm."""
+    """Returns coal's answers to warm queries."""
     query = CoalQuery(pen.vertices, sphere.vertices, "CachedGuess")
     rows = []
     for X in X_WA:
@@ -263,11 +224,3 @@ def _follow_with_coal(pen: Mesh, sphere: Mesh, X_WA: np.ndarray) -> ContactCurve
         rows.append([distance_m, *-found.normal, *points])
     distance, normal, point = np.split(np.array(rows), [1, 4], axis=1)
     return ContactCurves(distance[:, 0], normal, point)
-
-
-def _find_libraries() -> dict[str, _Follow]:
-    """Returns library name -> function that follows a contact, of those installed."""
-    found: dict[str, _Follow] = {OURS: _follow}
-    if find_spec("coal") is not None:
-        found["coal"] = _follow_with_coal
-    return found

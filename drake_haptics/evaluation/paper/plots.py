@@ -1,4 +1,4 @@
-"""Draws the evaluation as the paper's Figures 11 and 12 do, and the growths of 6.3."""
+"""Draws the evaluation like the paper's Figures 11 and 12, and section 6.3."""
 
 from __future__ import annotations
 
@@ -6,6 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drake_haptics.common.colors import (
+    ENVIRONMENT,
+    FRONT,
+    INKS,
+    NEAR_CONTACT,
+    PENETRATING_CONTACT,
+    TOOL,
+)
 from drake_haptics.evaluation.paper.evaluation import Analysis
 from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass
 from drake_haptics.evaluation.paper.profile import (
@@ -22,53 +30,47 @@ if TYPE_CHECKING:
 
 _PROFILE_INCH = (10.0, 5.6)
 _PERIOD_US = 1000.0
-_PENETRATING_COLOR = "#fdecea"
-# Narrower intervals have no room for their letter, as a share of the run.
+# Least width of an interval with a letter, as a share of the run.
 _NARROWEST_LETTER = 0.012
 _PEN_INCH = (12.0, 6.8)
 _THIN, _THICK = 0.8, 2.8
-_AXIS_COLORS = {"x": "#1f5fa8", "y": "#d9822b", "z": "#2f8f5b"}
+_AXIS_COLORS = dict(zip("xyz", INKS, strict=False))
 _ANALYSIS_INCH = (12.0, 3.8)
-_OURS, _PAPER = "#1f5fa8", "#b03030"
-_METHOD = {
-    "octree": ("paper's clusters", "#1f5fa8"),
-    "shared": ("shared stiffness", "#d9822b"),
-}
+_METHOD = {"octree": ("paper's clusters", FRONT), "shared": ("shared stiffness", TOOL)}
 
 
 def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
-    """Draws a profile on a figure of its own, which no window shows."""
+    """Draws a profile on a new figure, without a window."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_PROFILE_INCH, layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     time_s = profile.time_s
     for seconds, label, color, width in (
-        (profile.tick_s, "whole tick", "#9aa5b1", 0.7),
-        (profile.query_s, "contact query", "#1f5fa8", 0.8),
-        (profile.force_s, "clusters and force", "#d9822b", 0.8),
+        (profile.tick_s, "whole tick", ENVIRONMENT, 0.7),
+        (profile.query_s, "contact query", FRONT, 0.8),
+        (profile.force_s, "clusters and force", TOOL, 0.8),
     ):
         above.plot(time_s, 1e6 * seconds, color=color, lw=width, label=label)
-    above.axhline(_PERIOD_US, color="#b03030", ls="--", lw=1.0, label="1 ms")
+    above.axhline(_PERIOD_US, color=PENETRATING_CONTACT, ls="--", lw=1.0, label="1 ms")
     above.set_yscale("log")
     least_s = np.percentile([profile.query_s, profile.force_s], 1, axis=1)
     least_us = 1e6 * float(least_s.min())
     most_us = max(_PERIOD_US, 1e6 * float(profile.tick_s.max()))
-    # Room for the letters above the highest line.
+    # Leaves room for the letters above the highest line.
     above.set_ylim(0.7 * least_us, 3.0 * most_us)
     above.set_ylabel("time, µs")
-    below.plot(time_s, profile.contacts, color="#1f5fa8", lw=0.9, label="contacts")
-    below.plot(time_s, profile.clusters, color="#2f8f5b", lw=0.9, label="clusters")
+    below.plot(time_s, profile.contacts, color=FRONT, lw=0.9, label="contacts")
+    below.plot(time_s, profile.clusters, color=NEAR_CONTACT, lw=0.9, label="clusters")
     below.set_ylim(0, 1.1 * max(1, int(profile.contacts.max())))
     below.set_ylabel("number")
     below.set_xlabel("time of the hand, s")
     below.set_xlim(time_s[0], time_s[-1])
     for axes in (above, below):
-        _mark_intervals(axes, figures.intervals, time_s)
+        _mark_intervals(axes, figures.intervals, time_s, has_letters=axes is above)
         axes.legend(
             loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=9
         )
-    _write_letters(above, figures.intervals, time_s)
     pieces = f"{profile.pieces[0]:,} and {profile.pieces[1]:,} pieces"
     figure.suptitle(
         f"{profile.name}: {pieces} (D: disjoint, P: penetrating)", fontsize=11
@@ -77,38 +79,35 @@ def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
 
 
 def _mark_intervals(
-    axes: Axes, intervals: tuple[Interval, ...], time_s: np.ndarray
+    axes: Axes, intervals: tuple[Interval, ...], time_s: np.ndarray, has_letters: bool
 ) -> None:
-    """Draws lines between intervals, and shades those in which objects penetrate."""
+    """Draws lines between intervals, and shades penetrating ones.
+
+    Wide intervals have a letter, D or P.
+    """
     for interval in intervals:
         begin_s, end_s = time_s[interval.start], time_s[interval.stop - 1]
         if interval.start > 0:
-            axes.axvline(begin_s, color="#777777", lw=0.5)
+            axes.axvline(begin_s, color="0.5", lw=0.5)
         if interval.penetrating:
-            axes.axvspan(begin_s, end_s, color=_PENETRATING_COLOR, lw=0, zorder=0)
-
-
-def _write_letters(
-    axes: Axes, intervals: tuple[Interval, ...], time_s: np.ndarray
-) -> None:
-    """Writes D or P over each interval that is wide enough."""
-    for interval in intervals:
-        if interval.stop - interval.start < _NARROWEST_LETTER * len(time_s):
-            continue
-        middle_s = (time_s[interval.start] + time_s[interval.stop - 1]) / 2
-        axes.text(
-            middle_s,
-            0.94,
-            interval.letter,
-            transform=axes.get_xaxis_transform(),
-            ha="center",
-            va="center",
-            fontsize=8,
-        )
+            axes.axvspan(
+                begin_s, end_s, color=PENETRATING_CONTACT, alpha=0.1, lw=0, zorder=0
+            )
+        is_wide = interval.stop - interval.start >= _NARROWEST_LETTER * len(time_s)
+        if has_letters and is_wide:
+            axes.text(
+                (begin_s + end_s) / 2,
+                0.94,
+                interval.letter,
+                transform=axes.get_xaxis_transform(),
+                ha="center",
+                va="center",
+                fontsize=8,
+            )
 
 
 def draw_pen_pass(passed: PenPass) -> Figure:
-    """Draws a pass on a figure: a row for each library, a column for each value."""
+    """Draws a pass on a figure, with a row per library and a column per value."""
     from matplotlib.figure import Figure
 
     rows = len(passed.curves)
@@ -124,12 +123,12 @@ def draw_pen_pass(passed: PenPass) -> Figure:
         row[2].plot(
             passed.time_s,
             1e3 * passed.truth.distance_m,
-            color="#b03030",
+            color=PENETRATING_CONTACT,
             lw=0.8,
             ls=":",
             label="perfect sphere",
         )
-        row[2].axhline(0.0, color="#999999", lw=0.6)
+        row[2].axhline(0.0, color="0.6", lw=0.6)
         titles = ("contact point, mm", "contact normal", "distance, mm")
         for axes, title in zip(row, titles, strict=True):
             whose = "" if name == OURS else f" ({name})"
@@ -152,12 +151,12 @@ def _draw_curve(
     """Draws a curve, thick where `inside`."""
     label: str | None = name or None
     for interval in find_intervals(inside):
-        # One tick more, so that the pieces join.
+        # One more tick, so that the pieces join.
         shown = slice(interval.start, interval.stop + 1)
         axes.plot(
             time_s[shown],
             values[shown],
-            color=_AXIS_COLORS.get(name, "#222222"),
+            color=_AXIS_COLORS.get(name, "black"),
             lw=_THICK if interval.penetrating else _THIN,
             solid_capstyle="butt",
             label=label,
@@ -166,7 +165,7 @@ def _draw_curve(
 
 
 def draw_analysis(analysis: Analysis) -> Figure:
-    """Draws the analysis on a figure of its own, which no window shows."""
+    """Draws the analysis on a new figure, without a window."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_ANALYSIS_INCH, layout="constrained")
@@ -174,11 +173,11 @@ def draw_analysis(analysis: Analysis) -> Figure:
     _draw_depths(depth, analysis)
     x = np.array(analysis.pairs.pairs)
     line = analysis.pairs.line
-    pairs.plot(x, analysis.pairs.median_us, "o", color=_OURS, label="measured")
+    pairs.plot(x, analysis.pairs.median_us, "o", color=FRONT, label="measured")
     pairs.plot(
         x,
         line.intercept + line.slope * x,
-        color=_OURS,
+        color=FRONT,
         lw=0.9,
         label=f"line, R² = {line.r_squared:.3f}",
     )
@@ -192,9 +191,7 @@ def draw_analysis(analysis: Analysis) -> Figure:
         force.loglog(forces.contacts, forces.median_us, "o-", color=color, label=label)
     first = analysis.forces[0]
     proportional = first.median_us[0] * np.array(first.contacts) / first.contacts[0]
-    force.loglog(
-        first.contacts, proportional, ":", color="#777777", label="in proportion"
-    )
+    force.loglog(first.contacts, proportional, ":", color="0.5", label="in proportion")
     force.set_xlabel("contacts before clustering")
     force.set_ylabel("clusters and force, µs")
     force.set_title("force over contacts", fontsize=10)
@@ -205,18 +202,12 @@ def draw_analysis(analysis: Analysis) -> Figure:
 def _draw_depths(axes: Axes, analysis: Analysis) -> None:
     rows = analysis.depths.rows
     triangles = [row.triangles for row in rows]
-    axes.loglog(
-        triangles, [row.median_us for row in rows], "o-", color=_OURS, label="median"
+    median_us, p99_us = [row.median_us for row in rows], [row.p99_us for row in rows]
+    axes.loglog(triangles, median_us, "o-", color=FRONT, label="median")
+    axes.loglog(triangles, p99_us, "o--", color=FRONT, alpha=0.5, label="p99")
+    axes.axhline(
+        1e6 * DEPTH_SECONDS, color=PENETRATING_CONTACT, ls=":", label="paper, 2003"
     )
-    axes.loglog(
-        triangles,
-        [row.p99_us for row in rows],
-        "o--",
-        color=_OURS,
-        alpha=0.5,
-        label="p99",
-    )
-    axes.axhline(1e6 * DEPTH_SECONDS, color=_PAPER, ls=":", label="paper, 2003")
     axes.set_xlabel("triangles of each body")
     axes.set_ylabel("one depth, µs")
     axes.set_title("depth over triangles", fontsize=10)

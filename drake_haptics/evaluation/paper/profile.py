@@ -1,11 +1,11 @@
-"""Times every tick of a scenario in the simulator, and sums up the run (Figure 11)."""
+"""Times every tick of a scenario, and summarizes the run (Figure 11)."""
 
 from __future__ import annotations
 
 import gc
 from dataclasses import asdict, dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydrake.systems.framework import Context
@@ -17,42 +17,40 @@ from drake_haptics.simulation.profiling import CallbackTimer
 from drake_haptics.simulation.run import run
 
 _WARM_UP_TICKS = 20
-# Shorter intervals, in ticks, are flicker at the edge of contact.
+# Shorter intervals, in ticks, are noise at the edge of contact.
 _SHORTEST_INTERVAL = 40
-# Fewer ticks of a kind give no reliable median.
+# Least number of ticks for a reliable median.
 _LEAST_TICKS = 20
-# Fewer points, or nearly equal ones, do not determine a power.
+# Least number of points, and least ratio, that determine a power.
 _LEAST_NUMBERS = 3
 _LEAST_SPAN = 4.0
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A run tick by tick, as one chart of the paper's Figure 11 shows it.
+    """A run tick by tick, as in a chart of the paper's Figure 11.
 
-    Times are those of the systems' own callbacks, Python and core, as they run within
-    the simulator; the whole tick is all that the computer does for it. The run is made
-    several times, the same each time, and a tick's time is the median of these, without
-    the disturbances of single runs.
+    Times are those of the systems' callbacks, in Python and core, within the simulator;
+    the whole tick includes everything. The same run is repeated, and the time of a tick
+    is the median of the runs, without disturbances.
 
     Attributes:
-        name: Name of the scenario.
-        figure: Chart of the paper that is like it; empty if none is.
+        figure: Corresponding chart of the paper; empty without one.
         pieces: Convex pieces of the tool, and of all objects.
         triangles: Triangles of the tool, and of all objects.
-        objects: Number of objects.
         time_s: (n,) simulated time of each tick, s.
         query_s: (n,) time of the contact query, s.
         force_s: (n,) time of clustering and force computation, s.
         tick_s: (n,) time of the whole tick, s.
-        disturbed_s: (passes n,) time of the whole tick in each run, disturbances
-            included, s.
+        disturbed_s: (passes n,) time of the whole tick in each run, including
+            disturbances, s.
         contacts: (n,) number of contacts before clustering.
         clusters: (n,) number of clusters.
         touched: (n,) number of objects with a contact.
-        touched_triangles: Triangles of all objects that are ever touched, together.
-        distance_m: (n,) distance of the nearest contact, m, negative where it
-            penetrates; infinite without a contact.
+        touched_triangles: Total number of triangles of all objects that are ever
+            touched.
+        distance_m: (n,) distance of the nearest contact, m, negative in penetration;
+            infinite without a contact.
     """
 
     name: str
@@ -80,12 +78,12 @@ class Profile:
 def measure_profile(
     scenario: Scenario, seconds: float | None = None, passes: int = 3
 ) -> Profile:
-    """Runs a scenario at 1 kHz of simulated time, as fast as it can.
+    """Runs a scenario at 1 kHz of simulated time, as fast as possible.
 
     Args:
         scenario: Scenario to run.
-        seconds: Duration of its path that is run, s. Defaults to all of it.
-        passes: Number of runs, which are the same but for their times.
+        seconds: Duration of the path to run, s. Defaults to all of it.
+        passes: Number of runs.
     """
     duration_s = scenario.path.duration_s
     if seconds is not None:
@@ -118,14 +116,11 @@ def measure_profile(
     )
 
 
-@dataclass(frozen=True)
-class _Pass:
-    """One run.
+class _Pass(NamedTuple):
+    """One run: (3, n) times of query, force and tick, s, and its contacts.
 
-    Attributes:
-        times_s: (3, n) times of query, force and tick, s.
-        notes: (n, 4) contacts, clusters, objects touched and nearest distance, m.
-        ever: Indices of the objects that were ever touched.
+    The (n, 4) notes are contacts, clusters, touched objects and nearest distance, m.
+    The indices are those of all objects that were ever touched.
     """
 
     times_s: np.ndarray
@@ -143,7 +138,7 @@ def _run_once(scenario: Scenario, duration_s: float) -> _Pass:
     notes: list[tuple[float, ...]] = []
 
     def note(context: Context) -> None:
-        # Both are cached by now, so that a tick is longer by this reading alone.
+        # Both are already cached, so that reading them takes little time.
         contacts = contacts_port.Eval(loop.contact_query.GetMyContextFromRoot(context))
         clusters = clusters_port.Eval(
             loop.contact_clustering.GetMyContextFromRoot(context)
@@ -154,26 +149,20 @@ def _run_once(scenario: Scenario, duration_s: float) -> _Pass:
         notes.append((len(contacts), len(clusters), len(touched), nearest_m))
         timer.end_tick(context)
 
-    # Garbage of earlier runs is not collected during this one.
+    # Prevents collection of earlier garbage during the run.
     gc.collect()
     run(haptic, duration_s, on_tick=note)
     own_s, tick_s = timer.calc_times()
     force_s = own_s[loop.contact_clustering] + own_s[loop.penalty_force]
     times_s = np.array([own_s[loop.contact_query], force_s, tick_s])
-    # The first call only begins a tick, and the first ticks meet cold memory.
+    # The first call only begins a tick, and the first ticks are cold.
     kept = slice(_WARM_UP_TICKS, None)
     return _Pass(times_s[:, kept], np.array(notes[1:])[kept], ever)
 
 
 @dataclass(frozen=True)
 class Interval:
-    """Ticks of one kind.
-
-    Attributes:
-        start: First tick of the interval.
-        stop: Tick after its last.
-        penetrating: Whether objects penetrate; else they are disjoint.
-    """
+    """Ticks from `start` up to, not including, `stop`, disjoint or penetrating."""
 
     start: int
     stop: int
@@ -181,20 +170,19 @@ class Interval:
 
     @property
     def letter(self) -> str:
-        """The mark of the paper's Figure 11: P or D."""
+        """Mark as in the paper's Figure 11: P or D."""
         return "P" if self.penetrating else "D"
 
 
 def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]:
     """Divides ticks into intervals that are disjoint or penetrating as a whole.
 
-    As long as there is an interval of fewer than `shortest` ticks, the shortest of
-    all is joined with its neighbors, so that what flickers at the edge of contact
-    does not fill a chart with lines.
+    While an interval has fewer than `shortest` ticks, the shortest is joined with its
+    neighbors, so that noise at the edge of contact does not fill a chart with lines.
 
     Args:
         penetrating: (n,) bool, whether objects penetrate in each tick.
-        shortest: Ticks of the shortest interval that is reported.
+        shortest: Least number of ticks of an interval.
 
     Returns:
         Intervals of alternating kind that cover all ticks; empty without ticks.
@@ -210,7 +198,7 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
         k = int(lengths.argmin())
         if lengths[k] >= shortest:
             break
-        # Without its edges it is one with the neighbors, which are of one kind.
+        # Without its edges it joins its neighbors, which are of the same kind.
         if k == 0:
             kind = not kind
             del edges[1]
@@ -226,15 +214,7 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
 
 @dataclass(frozen=True)
 class StateTimes:
-    """Times of the ticks of one kind.
-
-    Attributes:
-        ticks: Number of the ticks.
-        query: Times of the contact query.
-        force: Times of clustering and force.
-        tick: Times of the whole tick.
-        contacts: Median number of contacts before clustering.
-    """
+    """Times of ticks of one kind, with their median number of contacts."""
 
     ticks: int
     query: TickTimes
@@ -245,32 +225,21 @@ class StateTimes:
 
 @dataclass(frozen=True)
 class ProfileFigures:
-    """The figures of a run.
+    """The figures of a run, including those of a `Profile`.
 
     Attributes:
-        name: Name of the scenario.
-        figure: Chart of the paper that is like it; empty if none is.
-        pieces: Convex pieces of the tool, and of all objects.
-        triangles: Triangles of the tool, and of all objects.
-        objects: Number of objects.
         disjoint: Times of ticks in which nothing penetrates; None without such ticks.
-        penetrating: Times of ticks in which something penetrates; None without such
-            ticks.
+        penetrating: Times of ticks in which something penetrates, or None.
         all_ticks: Times of all ticks.
-        disturbed: Times of the whole tick, disturbances included.
+        disturbed: Times of the whole tick, including disturbances.
         in_time: Share of the disturbed ticks that took less than 1 ms.
-        most_contacts: Most contacts at a tick, before clustering.
-        most_clusters: Most clusters at a tick.
-        most_touched: Most objects in contact at a tick.
-        touched_triangles: Triangles of all objects that are ever touched, together.
         deepest_m: Deepest penetration, m.
         busiest: Times of ticks with at least half the most contacts.
-        depth_overhead: Median time of the query where something penetrates, over that
-            where nothing does, at the same number of contacts; None if no number has
-            enough ticks of both kinds.
+        depth_overhead: Ratio of the query's median times with and without penetration,
+            at the same number of contacts; None if no number has enough ticks of both
+            kinds.
         contact_growth: Growth of the query's median time with the number of contacts;
             None if fewer than three numbers, or nearly equal ones, have enough ticks.
-        intervals: Intervals, disjoint and penetrating in turn.
     """
 
     name: str
@@ -305,20 +274,17 @@ class ProfileFigures:
 
 def sum_up(profile: Profile) -> ProfileFigures:
     """Returns the figures of a run of at least one tick."""
-    inside = profile.penetrating
-    times = _times_of(profile, np.ones_like(inside))
-    assert times is not None
-    busy = _times_of(profile, 2 * profile.contacts >= profile.contacts.max())
-    assert busy is not None
+    inside, outside = profile.penetrating, ~profile.penetrating
+    busy = 2 * profile.contacts >= profile.contacts.max()
     return ProfileFigures(
         name=profile.name,
         figure=profile.figure,
         pieces=profile.pieces,
         triangles=profile.triangles,
         objects=profile.objects,
-        disjoint=_times_of(profile, ~inside),
-        penetrating=_times_of(profile, inside),
-        all_ticks=times,
+        disjoint=_times_of(profile, outside) if outside.any() else None,
+        penetrating=_times_of(profile, inside) if inside.any() else None,
+        all_ticks=_times_of(profile, inside | outside),
         disturbed=TickTimes.of(profile.disturbed_s),
         in_time=float((profile.disturbed_s < PERIOD_S).mean()),
         most_contacts=int(profile.contacts.max()),
@@ -326,32 +292,26 @@ def sum_up(profile: Profile) -> ProfileFigures:
         most_touched=int(profile.touched.max()),
         touched_triangles=profile.touched_triangles,
         deepest_m=max(0.0, -float(profile.distance_m.min())),
-        busiest=busy,
+        busiest=_times_of(profile, busy),
         depth_overhead=_find_overhead(profile),
         contact_growth=_fit_growth(profile),
         intervals=tuple(find_intervals(inside, _SHORTEST_INTERVAL)),
     )
 
 
-def _times_of(profile: Profile, which: np.ndarray) -> StateTimes | None:
-    """Returns the times of some ticks; None without ticks."""
-    if not which.any():
-        return None
-    query, force, tick = (
-        TickTimes.of(seconds[which])
-        for seconds in (profile.query_s, profile.force_s, profile.tick_s)
-    )
+def _times_of(profile: Profile, which: np.ndarray) -> StateTimes:
+    """Returns the times of some ticks."""
     return StateTimes(
         ticks=int(which.sum()),
-        query=query,
-        force=force,
-        tick=tick,
+        query=TickTimes.of(profile.query_s[which]),
+        force=TickTimes.of(profile.force_s[which]),
+        tick=TickTimes.of(profile.tick_s[which]),
         contacts=float(np.median(profile.contacts[which])),
     )
 
 
 def _find_overhead(profile: Profile) -> float | None:
-    """Returns `depth_overhead`: the mean ratio, numbers weighed by their ticks."""
+    """Returns `depth_overhead`, the mean ratio weighted by ticks."""
     ratios, weights = [], []
     inside, query_s = profile.penetrating, profile.query_s
     for number in np.unique(profile.contacts):

@@ -1,12 +1,12 @@
-"""Reports the evaluation in sections, and as one page that any browser shows."""
+"""Reports the evaluation in sections, and as an HTML page."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from drake_haptics.evaluation.measuring.timing import name_machine
 from drake_haptics.evaluation.paper.evaluation import PaperEvaluation, Part, Run
@@ -40,51 +40,32 @@ if TYPE_CHECKING:
 _CUT_SHORT = " Only the beginnings of Figure 11's paths were run (--quick)."
 
 
-@dataclass(frozen=True)
-class Picture:
-    """A picture that can be drawn.
-
-    Attributes:
-        key: Part of a file's name.
-        alt: Description of the picture.
-        draw: Function that returns it as a figure.
-    """
+class Picture(NamedTuple):
+    """A picture that can be drawn, whose key is part of its file's name."""
 
     key: str
     alt: str
     draw: Callable[[], Figure]
 
 
-@dataclass(frozen=True)
-class Block:
-    """Statements and pictures that belong together in a section.
+class Block(NamedTuple):
+    """A group of statements and pictures in a section.
 
-    Attributes:
-        title: Title of a line; empty if the section's is enough.
-        statements: Statements on where we agree and differ.
-        pictures: Pictures of the curves.
+    The title may be empty.
     """
 
     title: str
-    statements: tuple[Statement, ...]
-    pictures: tuple[Picture, ...]
+    statements: Sequence[Statement]
+    pictures: Sequence[Picture]
 
 
-@dataclass(frozen=True)
-class Section:
-    """A part of the evaluation.
-
-    Attributes:
-        part: Name of the part.
-        title: Title of a line.
-        blocks: One block or more.
-        tables: Tables of the figures.
-    """
+class Section(NamedTuple):
+    """A part of the evaluation."""
 
     part: Part
     title: str
-    blocks: tuple[Block, ...]
-    tables: tuple[Table, ...]
+    blocks: Sequence[Block]
+    tables: Sequence[Table]
 
     @property
     def statements(self) -> list[Statement]:
@@ -100,28 +81,26 @@ class Section:
 def make_sections(evaluation: PaperEvaluation) -> list[Section]:
     """Returns a section for each part that was measured."""
     sections = []
-    if evaluation.table1:
-        sections.append(_section_table1(evaluation))
-    if evaluation.figure11:
-        sections.append(_section_figure11(evaluation))
-    if evaluation.figure12:
-        sections.append(_section_figure12(evaluation))
-    if evaluation.analysis is not None:
-        analysis = evaluation.analysis
-        picture = Picture(
-            "analysis",
-            "Depth over triangles, query over pairs and force over contacts",
-            lambda: draw_analysis(analysis),
-        )
-        statements = tuple(judge_analysis(analysis))
-        sections.append(
-            Section(
-                "analysis",
-                "Section 6.3: what grows with what",
-                (Block("", statements, (picture,)),),
-                tuple(make_analysis_tables(analysis)),
-            )
-        )
+    if pieces := evaluation.table1:
+        blocks = [Block("", judge_table1(pieces), [])]
+        tables = [make_table1(pieces)]
+        sections.append(Section("table1", "Table 1: convex pieces", blocks, tables))
+    if runs := evaluation.figure11:
+        blocks = [_make_block(run, evaluation.is_cut_short) for run in runs]
+        tables = [make_run_table(runs), make_profile_table(runs)]
+        title = "Figure 11: time of each tick"
+        sections.append(Section("figure11", title, blocks, tables))
+    if passes := evaluation.figure12:
+        blocks = [Block("", judge_figure12(passes), list(map(_draw_pass, passes)))]
+        title = "Figure 12: a pen passes over a sphere"
+        sections.append(Section("figure12", title, blocks, [make_pen_table(passes)]))
+    if (analysis := evaluation.analysis) is not None:
+        words = "Depth over triangles, query over pairs and force over contacts"
+        picture = Picture("analysis", words, partial(draw_analysis, analysis))
+        blocks = [Block("", judge_analysis(analysis), [picture])]
+        title = "Section 6.3: what grows with what"
+        tables = make_analysis_tables(analysis)
+        sections.append(Section("analysis", title, blocks, tables))
     return sections
 
 
@@ -135,46 +114,16 @@ def describe_machine_line(evaluation: PaperEvaluation) -> str:
     )
 
 
-def _section_table1(evaluation: PaperEvaluation) -> Section:
-    return Section(
-        "table1",
-        "Table 1: convex pieces",
-        (Block("", tuple(judge_table1(evaluation.table1)), ()),),
-        (make_table1(evaluation.table1),),
-    )
-
-
-def _section_figure11(evaluation: PaperEvaluation) -> Section:
-    runs = evaluation.figure11
-    return Section(
-        "figure11",
-        "Figure 11: time of each tick",
-        tuple(_block_of_run(run, evaluation.is_cut_short) for run in runs),
-        (make_run_table(runs), make_profile_table(runs)),
-    )
-
-
-def _block_of_run(run: Run, is_cut_short: bool) -> Block:
+def _make_block(run: Run, is_cut_short: bool) -> Block:
     figures = run.figures
     picture = Picture(
         f"figure11-{figures.name.replace(', ', '-').replace(' ', '-')}",
         f"{figures.name}: time of each tick above, number of contacts below",
-        lambda: draw_profile(run.profile, figures),
+        partial(draw_profile, run.profile, figures),
     )
     like = f", as Figure {figures.figure}" if figures.figure else ""
     title = f"{figures.name[0].upper()}{figures.name[1:]}{like}"
-    statements = judge_run(figures, is_cut_short=is_cut_short)
-    return Block(title, tuple(statements), (picture,))
-
-
-def _section_figure12(evaluation: PaperEvaluation) -> Section:
-    passes = evaluation.figure12
-    return Section(
-        "figure12",
-        "Figure 12: a pen passes over a sphere",
-        (Block("", tuple(judge_figure12(passes)), tuple(map(_draw_pass, passes))),),
-        (make_pen_table(passes),),
-    )
+    return Block(title, judge_run(figures, is_cut_short=is_cut_short), [picture])
 
 
 def _draw_pass(passed: PenPass) -> Picture:
@@ -182,12 +131,12 @@ def _draw_pass(passed: PenPass) -> Picture:
         f"figure12-{passed.triangles}-triangles",
         "Contact point, normal and distance of a pen that passes over a sphere of"
         f" {passed.triangles:,} triangles",
-        lambda: draw_pen_pass(passed),
+        partial(draw_pen_pass, passed),
     )
 
 
 def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:
-    """Writes the page as one HTML file, and each picture beside it as PNG.
+    """Writes the page as one HTML file, and each picture as a PNG file next to it.
 
     Raises:
         OSError: A file cannot be written.
@@ -215,7 +164,7 @@ def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:
 
 
 def count_verdicts(sections: Sequence[Section]) -> Table:
-    """Counts the statements of each verdict, a row for each section and one for all."""
+    """Counts the statements by verdict, for each section and in total."""
 
     def make_row(title: str, statements: Sequence[Statement]) -> tuple[str, ...]:
         counts = Counter(statement.verdict for statement in statements)
@@ -232,7 +181,7 @@ def count_verdicts(sections: Sequence[Section]) -> Table:
 
 
 def summarize(sections: Sequence[Section]) -> str:
-    """Says how many statements there are of each verdict."""
+    """Returns a sentence with the number of statements of each verdict."""
     counts = Counter(
         statement.verdict for section in sections for statement in section.statements
     )

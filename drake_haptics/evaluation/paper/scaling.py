@@ -29,19 +29,13 @@ _SLIDE_REPEATS = 7
 _TEETH_ACROSS = (1, 2, 4, 6, 8, 12, 16)
 _WIDTH_M = 0.04
 _CLUSTER_M = 8e-3
-# With fewer contacts the call from Python takes most of the time.
+# Least number of contacts; with fewer the call from Python takes most of the time.
 FEWEST_FITTED = 16
 
 
 @dataclass(frozen=True)
 class PairScaling:
-    """Times of a query over the number of pairs that penetrate.
-
-    Attributes:
-        pairs: Numbers of pairs that penetrate.
-        median_us: Median times of the whole query, µs.
-        line: Line through these times.
-    """
+    """Median times of a whole query over the number of pairs that penetrate."""
 
     pairs: tuple[int, ...]
     median_us: tuple[float, ...]
@@ -49,12 +43,12 @@ class PairScaling:
 
 
 def measure_pair_scaling(ticks: int) -> PairScaling:
-    """Slides brushes of 1 to 64 teeth over a plate, all teeth 0.5 mm deep."""
+    """Slides brushes with 1 to 64 teeth over a plate, 0.5 mm deep."""
     plate = make_plate()
     motion = plan_slide(ticks)
     brushes = [make_brush(teeth) for teeth in NUM_TEETH]
     trackers = [SceneTracker(brush, [plate], _TOLERANCE_M) for brush in brushes]
-    # In turns, so that a disturbance of the computer affects all brushes.
+    # In turns, so that disturbances affect all brushes alike.
     seconds = np.array(
         [
             [[tracker.query(X).query_seconds for X in motion] for tracker in trackers]
@@ -69,10 +63,10 @@ def measure_pair_scaling(ticks: int) -> PairScaling:
 def make_brush(
     teeth: int, across: int = _ACROSS, spacing_m: float = _SPACING_M
 ) -> Decomposition:
-    """Returns a tool of separate pointed teeth, their points at z = 0.
+    """Returns a tool of separate pointed teeth, with their points at z = 0.
 
-    A tooth is convex, has eight sides, and is 10 mm high. It is as wide as a third of
-    the spacing, and 2 mm at most.
+    A tooth is convex, has eight sides and is 10 mm high. Its width is a third of the
+    spacing, and at most 2 mm.
     """
     row, column = np.divmod(np.arange(teeth), across)
     places = (np.column_stack([column, row]) - (across - 1) / 2) * spacing_m
@@ -98,7 +92,7 @@ def make_plate() -> Decomposition:
 
 
 def plan_slide(ticks: int) -> np.ndarray:
-    """Returns X_WT (ticks, 4, 4), once round a circle of 10 mm radius, 0.5 mm deep."""
+    """Returns X_WT (ticks, 4, 4), once around a circle of 10 mm radius, 0.5 mm deep."""
     angle = np.linspace(0.0, 2.0 * np.pi, ticks)
     X_WT = np.tile(np.eye(4), (ticks, 1, 1))
     X_WT[:, 0, 3], X_WT[:, 1, 3] = 0.01 * np.cos(angle), 0.01 * np.sin(angle)
@@ -108,15 +102,11 @@ def plan_slide(ticks: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class ForceScaling:
-    """Forces and times of many contacts, for one way of clustering.
+    """Median times of clustering and force over contacts, for one kind of clustering.
 
-    Attributes:
-        method: "octree" (the paper's) or "shared".
-        contacts: Numbers of contacts before clustering.
-        forces: Numbers of forces that are computed, one for each cluster.
-        median_us: Median times of clustering and force, µs.
-        force_growth: Growth of the forces with the contacts.
-        time_growth: Growth of the time with the contacts, from `FEWEST_FITTED` on.
+    The method is "octree" (the paper's) or "shared". There is a force for each cluster.
+    Growths are over contacts before clustering; that of times is from `FEWEST_FITTED`
+    on.
     """
 
     method: str
@@ -128,7 +118,7 @@ class ForceScaling:
 
 
 def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
-    """Presses brushes of 1 to 256 teeth, all 40 mm wide, into a plate."""
+    """Presses brushes with 1 to 256 teeth, all 40 mm wide, into a plate."""
     plate = make_plate()
     sets = [_touch(across, plate) for across in _TEETH_ACROSS]
     cluster = {
@@ -141,7 +131,7 @@ def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
 
 
 def _touch(across: int, plate: Decomposition) -> _core.ContactSet:
-    """Returns the contacts of a square brush with that many teeth along a side."""
+    """Returns the contacts of a square brush with `across` teeth along a side."""
     brush = make_brush(across**2, across, _WIDTH_M / across)
     return SceneTracker(brush, [plate], _TOLERANCE_M).query(plan_slide(2)[0])
 

@@ -1,4 +1,4 @@
-"""Makes the scenarios of Figure 11, and those with the largest models of Table 1."""
+"""Makes the scenarios of Figure 11, and others with the largest models of Table 1."""
 
 from __future__ import annotations
 
@@ -25,8 +25,7 @@ from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems.contact.contact_query import ContactObject
 
-# How far beyond first touch the hand aims, m, again and again: off, lightly, firmly,
-# and so on.
+# Aims of the hand beyond first touch, m, in turn: off, lightly, firmly, and so on.
 _PRESSES_M = 1e-3 * np.array([-4, 0.5, 1, 5, 8, 6, 1, 0.5, 6, 8, 0.5])
 _REACH_M = 0.3
 # The real cup and spoon in the frames of the package's shapes: the cup stands at the
@@ -45,7 +44,7 @@ def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
 
     Args:
         meshes: Folder of real meshes; cup and spoon, the digestive system and the
-            armadillo are explored as well if it has them.
+            armadillo are also explored if it has them.
     """
     makers: dict[str, Callable[[], Scenario]] = {
         "spoon in cup": partial(_make_cup_spoon, None, "spoon in cup", "11-(a)"),
@@ -87,7 +86,7 @@ def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> ContactParame
 
 
 def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
-    """Goes down into the cup, round its wall, and across its floor."""
+    """Makes a spoon go down into the cup, around its wall and across its floor."""
     if meshes is None:
         cup, spoon = cut_shape("cup"), cut_shape("spoon")
     else:
@@ -99,7 +98,7 @@ def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
     places = []
     press = cycle(_PRESSES_M)
     for turn in np.linspace(0.0, 2.0 * np.pi, 33):
-        # The bowl's edge is on the wall; the handle leans to the other side.
+        # The bowl's edge is at the wall, and the handle leans to the other side.
         yaw = RotationMatrix.MakeZRotation(turn)
         lean = np.deg2rad(-80.0 + 10.0 * np.sin(2.0 * turn))
         R_WT = yaw @ RotationMatrix.MakeYRotation(lean)
@@ -125,7 +124,7 @@ def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
 def _make_probe(
     model: str, source: str, meshes: Path | None, name: str, figure: str
 ) -> Scenario:
-    """Leads a convex probe over the front of a model, upright and nearly flat."""
+    """Makes a convex probe go over the front of a model, upright and nearly flat."""
     # Round and convex, 24 mm thick.
     probe, mesh = cut_shape("peg"), load_model(model, source, meshes)
     target = decompose(mesh)
@@ -133,7 +132,7 @@ def _make_probe(
     places = []
     press = cycle(_PRESSES_M)
     for k, p_WQ in enumerate(_find_front(mesh)):
-        # Its end leans to -y out of the model and up, by more and less in turn.
+        # Its end leans to -y out of the model and up, by varying amounts.
         lean = np.deg2rad(55.0 - 25.0 * np.cos(0.25 * k))
         end_W = np.array([0.0, -np.cos(lean), np.sin(lean)])
         R_WT = RotationMatrix.MakeFromOneVector(end_W, axis_index=2)
@@ -152,7 +151,7 @@ def _make_probe(
 
 
 def _find_front(mesh: Mesh) -> Iterator[np.ndarray]:
-    """Yields the foremost vertices (-y) near a line that goes to and fro."""
+    """Yields the foremost vertices (-y) near a line that goes back and forth."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     middle, half = (low + high) / 2, (high - low) / 2
     for row, z in enumerate(np.linspace(0.35, -0.35, 5)):
@@ -164,7 +163,7 @@ def _find_front(mesh: Mesh) -> Iterator[np.ndarray]:
 
 
 def _make_machine_room() -> Scenario:
-    """Leads the wrench's flat over the tubes of the panel, up, down and rocking."""
+    """Makes the wrench's flat go over the tubes of the panel, up and down, rocking."""
     objects = tuple(
         ContactObject(name, pieces.core, RigidTransform(X_WO))
         for name, pieces, X_WO in load_machine_room()

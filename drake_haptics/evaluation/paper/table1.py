@@ -1,4 +1,4 @@
-"""Cuts models like the paper's into convex pieces, as its Table 1 does."""
+"""Cuts models like the paper's into convex pieces, as in its Table 1."""
 
 from __future__ import annotations
 
@@ -13,19 +13,10 @@ from drake_haptics.geometry.decomposition.decompose import decompose
 
 @dataclass(frozen=True)
 class ModelFigures:
-    """A model like one of the paper's, and the pieces it is cut into.
+    """A model like one of the paper's, and its pieces.
 
-    Attributes:
-        model: Name of the model in the paper.
-        paper_triangles: Triangles of the paper's model.
-        paper_pieces: Pieces of the paper's model.
-        source: "own shape", or the file; empty if there is no such model.
-        triangles: Triangles of our model.
-        pieces: Pieces of our model.
-        flat_pieces: Pieces without volume.
-        facets: Facets of all pieces; a flat piece counts as one.
-        virtual_facets: Facets that are not on the mesh.
-        seconds: Time of finding the pieces, s, now or when they were first found.
+    The source is "own shape" or a file, and empty if there is no such model; the fields
+    after it are figures of a `DecompositionReport`.
     """
 
     model: str
@@ -43,16 +34,16 @@ class ModelFigures:
 def measure_table1(
     meshes: Path | None, progress: Callable[[str, float], None]
 ) -> tuple[ModelFigures, ...]:
-    """Cuts each model of the paper's Table 1, or the models that are like it.
+    """Cuts each model of the paper's Table 1, or models like it.
 
     Args:
-        meshes: Folder of real meshes; a model found there has a row of its own below
-            that of the package's shape.
+        meshes: Folder of real meshes; a model found there has a row below that of the
+            package's shape.
         progress: Callback that takes the current work and the share done, in [0, 1].
 
     Returns:
-        Rows in the paper's order. A model that is neither a shape of the package nor
-        in the folder has one row with an empty source.
+        Rows in the paper's order. A model that is neither in the package nor in the
+        folder has one row with an empty source.
     """
     jobs = [
         (paper, source)
@@ -74,16 +65,17 @@ def measure_table1(
 def _cut(
     row: ModelFigures, source: str, meshes: Path | None, show: Callable[[float], None]
 ) -> ModelFigures:
-    """Returns a row with our figures."""
+    """Returns a row with this package's figures."""
     mesh = load_model(row.model, source, meshes)
     report = decompose(mesh, progress=show).report
+    names = (
+        "triangles",
+        "pieces",
+        "flat_pieces",
+        "facets",
+        "virtual_facets",
+        "seconds",
+    )
     return replace(
-        row,
-        source=source,
-        triangles=report.triangles,
-        pieces=report.pieces,
-        flat_pieces=report.flat_pieces,
-        facets=report.facets,
-        virtual_facets=report.virtual_facets,
-        seconds=report.seconds,
+        row, source=source, **{name: getattr(report, name) for name in names}
     )

@@ -1,82 +1,69 @@
-"""Says of each figure whether it agrees with the paper."""
+"""Judges whether each figure agrees with the paper."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from drake_haptics.common.one_line import count
+from drake_haptics.evaluation.paper import published
 from drake_haptics.evaluation.paper.evaluation import Analysis
 from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass
 from drake_haptics.evaluation.paper.profile import ProfileFigures
-from drake_haptics.evaluation.paper.published import (
-    CUP_SPOON_CONTACTS,
-    CUP_SPOON_RATE_HZ,
-    DEPTH_SECONDS,
-    FEW_CONTACTS_RATE_HZ,
-    ROOM_OBJECTS,
-    ROOM_TRIANGLES,
-    TOUCHED_OBJECTS,
-    TOUCHED_TRIANGLES,
-)
 from drake_haptics.evaluation.paper.scaling import FEWEST_FITTED, ForceScaling
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 
 Verdict = Literal["agrees", "better", "differs", "not measured"]
-# Verdict -> the end of a sentence that counts the statements of it.
+# Verdict -> end of the sentence that counts its statements.
 MEANING: dict[Verdict, str] = {
     "agrees": "agree with the paper",
     "better": "are better than the paper says",
     "differs": "differ from it, or are worse",
     "not measured": "were not measured",
 }
-# Powers that are "roughly proportional"; with a smaller one contacts cost less.
+# Powers that are "roughly proportional"; smaller ones are better.
 _PROPORTIONAL = (0.7, 1.3)
-# A rate is better from this many times the paper's on, as some of the factor is due to
-# a newer processor. It is the rate with all disturbances, as the paper's own is.
+# Factor from which a rate is better than the paper's, since the processor is newer.
+# Like the paper's, the rate includes disturbances.
 _BETTER_RATE = 5.0
-# A ratio of times up to this is "a very small amount of overhead" for depth.
+# Largest ratio of times that is "a very small amount of overhead" for depth.
 _SMALL_OVERHEAD = 1.25
-# A power below this is "almost constant".
+# Largest power that is "almost constant".
 _CONSTANT_EXPONENT = 0.2
 _LINEAR_R_SQUARED = 0.95
-# Counts this near to each other are the same.
+# Tolerance within which counts are the same.
 _NEAR = 0.02
-# Steps that differ by less are the same.
+# Tolerance within which steps are the same.
 _SAME = 1.02
 
 
-@dataclass(frozen=True)
-class Statement:
-    """A sentence and its verdict.
-
-    Attributes:
-        verdict: One of `MEANING`.
-        text: The sentence, with figures.
-    """
+class Statement(NamedTuple):
+    """A sentence with figures, and its verdict."""
 
     verdict: Verdict
     text: str
 
 
-def _compare(is_like: bool, text: str) -> Statement:
-    """Returns a statement that agrees with the paper, or differs from it."""
-    return Statement("agrees" if is_like else "differs", text)
+def _judge(is_like: bool, text: str, *, is_better: bool = False) -> Statement:
+    """Returns a statement that is better, agrees with the paper, or differs from it."""
+    return Statement(
+        "better" if is_better else "agrees" if is_like else "differs", text
+    )
 
 
 def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
     """Returns the statements on Table 1."""
     found = [row for row in rows if row.source]
-    fewer = [row for row in found if row.pieces <= row.paper_pieces]
-    more = [row for row in found if row.pieces > row.paper_pieces]
     statements = []
-    if fewer:
-        text = f"No more pieces than the paper: {_list_rows(fewer)}."
-        statements.append(Statement("better", text))
-    if more:
-        text = f"More pieces than the paper: {_list_rows(more)}."
-        statements.append(Statement("differs", text))
+    for is_more, words in ((False, "No more pieces"), (True, "More pieces")):
+        listed = "; ".join(
+            f"{row.model} ({row.source}) {row.pieces:,} for {row.paper_pieces:,}"
+            for row in found
+            if (row.pieces > row.paper_pieces) is is_more
+        )
+        if listed:
+            text = f"{words} than the paper: {listed}."
+            statements.append(_judge(False, text, is_better=not is_more))
     for row in rows:
         if not row.source:
             text = f"{row.model}: there is no such shape; --meshes FOLDER names one."
@@ -84,22 +71,12 @@ def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
     return statements
 
 
-def _list_rows(rows: Sequence[ModelFigures]) -> str:
-    return "; ".join(
-        f"{row.model} ({row.source}) {row.pieces:,} for {row.paper_pieces:,}"
-        for row in rows
-    )
-
-
 def judge_run(
     figures: ProfileFigures, *, is_cut_short: bool = False
 ) -> list[Statement]:
     """Returns the statements on a run of Figure 11.
 
-    Args:
-        figures: Figures of the run.
-        is_cut_short: Whether only the beginning of the path was run: largest values on
-            the whole path are not measured then.
+    Largest values on the whole path are not measured if it is cut short.
     """
     judge_most = {"11-(a)": _judge_contacts, "11-(c)": _judge_room}
     statements = [_judge_rate(figures)]
@@ -114,48 +91,48 @@ def judge_run(
 
 def _judge_rate(figures: ProfileFigures) -> Statement:
     is_cup = figures.figure == "11-(a)"
-    paper_Hz = CUP_SPOON_RATE_HZ if is_cup else FEW_CONTACTS_RATE_HZ
+    paper_Hz, said = (
+        (published.CUP_SPOON_RATE_HZ, "the paper's 500 Hz")
+        if is_cup
+        else (
+            published.FEW_CONTACTS_RATE_HZ,
+            "the kilohertz that the paper reaches with few contacts",
+        )
+    )
     tick, disturbed = figures.all_ticks.tick, figures.disturbed
     times = 1e6 / disturbed.p99_us / paper_Hz
-    said = (
-        "the paper's 500 Hz"
-        if is_cup
-        else "the kilohertz that the paper reaches with few contacts"
-    )
-    verdict: Verdict = "better" if times >= _BETTER_RATE else "agrees"
-    if times < 1.0:
-        verdict = "differs"
-    return Statement(
-        verdict,
+    return _judge(
+        times >= 1.0,
         f"Undisturbed, half of the ticks take less than {tick.median_us:,.0f} µs, 99 of"
         f" 100 less than {tick.p99_us:,.0f} µs, which is {figures.rate_Hz:,.0f} Hz."
         f" With all that disturbed it, 99 of 100 took less than"
         f" {disturbed.p99_us:,.0f} µs, {times:.1f} times {said}, and"
         f" {100.0 * figures.in_time:.2f} % of the ticks held 1 kHz.",
+        is_better=times >= _BETTER_RATE,
     )
 
 
 def _judge_contacts(figures: ProfileFigures) -> Statement:
-    most = figures.most_contacts
-    share = most / CUP_SPOON_CONTACTS
-    text = f"Up to {most} contacts at a time; the paper has up to {CUP_SPOON_CONTACTS}."
-    return _compare(0.5 <= share <= 2.0, text)
+    most, papers = figures.most_contacts, published.CUP_SPOON_CONTACTS
+    text = f"Up to {most} contacts at a time; the paper has up to {papers}."
+    return _judge(0.5 <= most / papers <= 2.0, text)
 
 
 def _judge_room(figures: ProfileFigures) -> Statement:
     triangles = figures.triangles[1]
     is_near = (
-        abs(figures.objects / ROOM_OBJECTS - 1.0) <= _NEAR
-        and abs(triangles / ROOM_TRIANGLES - 1.0) <= _NEAR
-        and figures.most_touched == TOUCHED_OBJECTS
+        abs(figures.objects / published.ROOM_OBJECTS - 1.0) <= _NEAR
+        and abs(triangles / published.ROOM_TRIANGLES - 1.0) <= _NEAR
+        and figures.most_touched == published.TOUCHED_OBJECTS
     )
-    return _compare(
+    return _judge(
         is_near,
         f"{figures.objects} objects of {triangles:,} triangles, of which the tool"
         f" touches {figures.most_touched} at once, with up to {figures.most_contacts}"
         f" contacts; those it ever touches have {figures.touched_triangles:,}"
-        f" triangles. The paper: {ROOM_OBJECTS}, {ROOM_TRIANGLES:,}, {TOUCHED_OBJECTS}"
-        f" and {TOUCHED_TRIANGLES:,}.",
+        f" triangles. The paper: {published.ROOM_OBJECTS},"
+        f" {published.ROOM_TRIANGLES:,}, {published.TOUCHED_OBJECTS} and"
+        f" {published.TOUCHED_TRIANGLES:,}.",
     )
 
 
@@ -169,7 +146,7 @@ def _judge_overhead(figures: ProfileFigures) -> list[Statement]:
         f" {'more' if change >= 0.0 else 'less'} where objects penetrate; the paper: a"
         " very small overhead."
     )
-    return [_compare(overhead <= _SMALL_OVERHEAD, text)]
+    return [_judge(overhead <= _SMALL_OVERHEAD, text)]
 
 
 def _judge_growth(figures: ProfileFigures) -> list[Statement]:
@@ -181,9 +158,8 @@ def _judge_growth(figures: ProfileFigures) -> list[Statement]:
         f"The query's time grows with the power {exponent:.2f} of the number of"
         " contacts; the paper: roughly in proportion."
     )
-    if exponent < _PROPORTIONAL[0]:
-        return [Statement("better", text)]
-    return [_compare(exponent <= _PROPORTIONAL[1], text)]
+    least, most = _PROPORTIONAL
+    return [_judge(exponent <= most, text, is_better=exponent < least)]
 
 
 def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
@@ -193,7 +169,7 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
         ours = passed.smoothness[OURS]
         on = f"on a sphere of {passed.triangles:,} triangles"
         statements.append(
-            _compare(
+            _judge(
                 ours.crossing_step_m <= ours.true_distance_step_m,
                 f"Distance {on}: where the pen goes in or out, a tick changes it by"
                 f" {1e6 * ours.crossing_step_m:.2f} µm beyond the motion, anywhere by"
@@ -204,7 +180,7 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
         smooth = ours.normal_step_deg <= _SAME * passed.exact.normal_step_deg
         bound = "no more than" if smooth else "more than"
         statements.append(
-            _compare(
+            _judge(
                 smooth,
                 f"Normal {on}: a tick turns it by {ours.normal_step_deg:.2f}° at most"
                 f" beyond the motion, {bound} the exact depth of the two polyhedra"
@@ -221,17 +197,13 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
 
 def _judge_peer(passed: PenPass, name: str) -> Statement:
     ours, theirs = passed.smoothness[OURS], passed.smoothness[name]
-    verdict: Verdict = "agrees"
-    if ours.normal_step_deg * _SAME < theirs.normal_step_deg:
-        verdict = "better"
-    elif ours.normal_step_deg > _SAME * theirs.normal_step_deg:
-        verdict = "differs"
     times = theirs.normal_step_deg / ours.normal_step_deg
-    return Statement(
-        verdict,
+    return _judge(
+        times * _SAME >= 1.0,
         f"For comparison, {name} on {passed.triangles:,} triangles: the normal steps"
         f" by {theirs.normal_step_deg:.2f}° at most, {times:.1f} times ours,"
         f" and the distance by {1e6 * theirs.distance_step_m:.2f} µm.",
+        is_better=times > _SAME,
     )
 
 
@@ -241,22 +213,23 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
     growth = depths.instruction_growth or depths.growth
     unit = "instructions" if depths.instruction_growth is not None else "times"
     rows = depths.rows
-    times = 1e6 * DEPTH_SECONDS / depths.typical_us
+    times = 1e6 * published.DEPTH_SECONDS / depths.typical_us
     statements = [
-        _compare(
+        _judge(
             growth.exponent <= _CONSTANT_EXPONENT,
             f"Depth over triangles: from {rows[0].triangles} to"
             f" {rows[-1].triangles:,} the {unit} grow with the power"
-            # A power that rounds to zero has no sign.
+            # Avoids -0.00.
             f" {round(growth.exponent, 2) + 0.0:.2f} of the triangles; the paper:"
             " almost constant.",
         ),
-        Statement(
-            "better" if times > 1.0 else "differs",
+        _judge(
+            False,
             f"One depth: {depths.typical_us:.2f} µs, {times:,.0f} times less than the"
             " paper's 0.1 ms.",
+            is_better=times > 1.0,
         ),
-        _compare(
+        _judge(
             line.r_squared >= _LINEAR_R_SQUARED,
             f"Query over penetrating pairs: {line.slope:.2f} µs for each, a straight"
             f" line with R² = {line.r_squared:.3f}; the paper: linear.",
@@ -269,7 +242,7 @@ def _judge_force(forces: ForceScaling) -> Statement:
     exponent = forces.time_growth.exponent
     whose = "the paper's clusters" if forces.method == "octree" else "shared stiffness"
     growth = "sub-linear" if exponent < 1.0 else "not sub-linear"
-    return _compare(
+    return _judge(
         exponent < 1.0,
         f"Force over contacts, {whose}: {count(forces.forces[-1], 'force')} for"
         f" {forces.contacts[-1]} contacts, and a time that grows with the power"

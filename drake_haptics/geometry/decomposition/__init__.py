@@ -1,1 +1,1 @@
-"""Convex pieces of a mesh: cut, merged, stored, shown. No module here needs Drake."""
+"""Cuts meshes into convex pieces, merges, stores and shows them, without Drake."""

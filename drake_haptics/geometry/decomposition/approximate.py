@@ -1,10 +1,9 @@
 """Decomposes a mesh into fewer convex pieces than the exact ones, approximately.
 
-The method "merged" joins neighboring pieces of the surface decomposition, the cheapest
-two first, for as long as the hull of what they hold departs from the mesh by no more
-than a stated error: no point of a hull is farther outside of the solid, and no point of
-the mesh is buried deeper in a hull. The hulls are those of corners of the mesh, so that
-they fill hollows and cut nothing away.
+The method "merged" joins neighboring pieces of the surface decomposition, cheapest
+first, while their hull departs from the mesh by at most a given error: no point of a
+hull is farther outside the solid, and no point of the mesh is deeper inside a hull. The
+hulls are those of vertices of the mesh, so that they fill hollows and cut nothing away.
 
 The method "coacd", an optional extra, is that of Wei, Liu, Ling and Su, "Approximate
 Convex Decomposition for 3D Meshes with Collision-Aware Concavity and Tree Search",
@@ -25,7 +24,7 @@ from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.decomposition.pieces import MergedPatches
 from drake_haptics.geometry.mesh.mesh import Mesh
 
-# CoACD's own default: how far, relative to the size, pieces may fill concavities.
+# CoACD's default depth to which pieces may fill concavities, relative to the size.
 CONCAVITY = 0.05
 
 _HOW_TO_INSTALL = (
@@ -34,10 +33,10 @@ _HOW_TO_INSTALL = (
 
 
 def check_error(method: str, error_m: float | None) -> None:
-    """Checks that the method merged has an error, and no other method has one.
+    """Checks that an error is given for the method merged only.
 
     Raises:
-        HapticsError: It is missing, means nothing or is out of range.
+        HapticsError: The error is missing, given for another method, or out of range.
     """
     if (method == "merged") != (error_m is not None):
         raise HapticsError(
@@ -62,7 +61,7 @@ def merge_patches(
         mesh: The mesh.
         piece_of_triangle: (m,) int32 pieces of its surface decomposition.
         error_m: Largest departure of a piece from the mesh, m.
-        progress: Called with the share done, from 0 to 1.
+        progress: Function that is called with the share done, from 0 to 1.
     """
     start = time.perf_counter()
 
@@ -83,7 +82,7 @@ def merge_patches(
 
 
 def coacd_parameters() -> dict[str, Any]:
-    """Returns all that the result depends on besides the mesh.
+    """Returns the parameters on which the result depends, besides the mesh.
 
     Raises:
         HapticsError: CoACD is not installed.
@@ -97,7 +96,7 @@ def coacd_parameters() -> dict[str, Any]:
 def coacd_hulls(mesh: Mesh, progress: Callable[[float], None]) -> list[np.ndarray]:
     """Cuts each component into convex pieces that fill it approximately.
 
-    Cavities are filled, and open surfaces are closed as CoACD sees fit.
+    CoACD fills cavities and closes open surfaces.
 
     Returns:
         The points (n_i, 3) of each piece, m.

@@ -1,8 +1,9 @@
-"""Decompositions kept on disk, so that each mesh is cut only once.
+"""Caches decompositions on disk, so that each mesh is cut only once.
 
-An entry's name is a hash of all that its content depends on, so entries never go stale.
-Nothing that is wrong with the cache stops a decomposition: an entry that cannot be read
-is made again and replaced, one that cannot be written is left out.
+The name of an entry is a hash of everything on which its content depends, so that
+entries never become stale. Faults of the cache never prevent a decomposition: an entry
+that cannot be read is made again and replaced, and one that cannot be written is left
+out.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from drake_haptics.geometry.mesh.mesh import Mesh
 
 _log = logging.getLogger(__name__)
 
-# Enough for thousands of meshes; the entries used longest ago go first.
+# Enough for thousands of meshes; the least recently used entries are deleted first.
 MAX_CACHE_BYTES = 512 * 2**20
 _ABANDONED_AFTER_S = 3600.0
 
@@ -45,10 +46,10 @@ def cache_folder() -> Path:
 
 
 def cache_key(mesh: Mesh, method: str, parameters: dict[str, Any]) -> str:
-    """Returns a hash of everything that the pieces depend on.
+    """Returns a hash of everything on which the pieces depend.
 
-    The compiled core itself stands for the version of its algorithm, so a changed
-    core never finds the pieces of another one.
+    It includes the compiled core, so that a changed core never finds pieces of another
+    one.
     """
     settings = [FORMAT_VERSION, _core_digest(), method, parameters]
     sha = hashlib.sha256(json.dumps(settings, sort_keys=True).encode())
@@ -64,11 +65,11 @@ def _core_digest() -> str:
 
 
 def load_cached(key: str, mesh: Mesh) -> PieceData | None:
-    """Returns the pieces stored under the key, None if there are none to use."""
+    """Returns the pieces stored under the key; None if there are no usable ones."""
     path = _path(key)
     try:
         pieces = read_pieces(path, key, mesh)
-        os.utime(path)  # used now: the last to be dropped
+        os.utime(path)  # marks it as recently used
         return pieces
     except FileNotFoundError:
         return None
@@ -78,7 +79,7 @@ def load_cached(key: str, mesh: Mesh) -> PieceData | None:
 
 
 def store_cached(key: str, pieces: PieceData) -> None:
-    """Stores pieces under the key, replacing what is there."""
+    """Stores pieces under the key, replacing an existing entry."""
     path = _path(key)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -98,7 +99,7 @@ def _path(key: str) -> Path:
 
 
 def _tidy(folder: Path, keep: Path) -> None:
-    """Drops what killed writers left, and old entries beyond the size limit."""
+    """Deletes files of killed writers, and old entries beyond the size limit."""
     entries = []
     for path in folder.iterdir():
         try:
@@ -109,7 +110,7 @@ def _tidy(folder: Path, keep: Path) -> None:
             elif path.suffix == ".npz" and path != keep:
                 entries.append((status.st_mtime, status.st_size, path))
         except FileNotFoundError:
-            continue  # another process tidies too
+            continue  # another process is deleting, too
     room = MAX_CACHE_BYTES - keep.stat().st_size
     for _, size, path in sorted(entries, reverse=True):
         room -= size

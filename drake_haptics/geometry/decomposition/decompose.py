@@ -1,4 +1,4 @@
-"""Decomposition of a mesh into the convex pieces that contacts are found on."""
+"""Decomposes a mesh into the convex pieces between which contacts are found."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ Method = Literal["surface", "merged", "hull", "coacd"]
 METHODS: tuple[Method, ...] = get_args(Method)
 Progress = Callable[[float], None]
 
-# Within this share of the mesh's size a facet of one of CoACD's pieces is on the mesh,
-# which it has remeshed.
+# Distance, relative to the mesh's size, within which a facet of CoACD's pieces counts
+# as on the mesh, because CoACD remeshes.
 _ON_MESH = 5e-3
 
-# Share of finding the exact pieces in the time of merging, for the progress.
+# Share of the progress for finding the exact pieces before merging.
 _EXACT_SHARE = 0.2
 
 
@@ -57,8 +57,8 @@ class Decomposition:
 
     Attributes:
         mesh: The mesh.
-        core: The pieces as the core uses them.
-        method: Method by which they were found.
+        core: The pieces in the form of the core.
+        method: Method by which they were made.
         report: Counts and time.
     """
 
@@ -80,14 +80,14 @@ class Decomposition:
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # The core's part is put together again from what a file would hold.
+        # The core's part is rebuilt from the content of a file.
         return _assemble, (self.mesh, self.method, self._data, self.report.from_cache)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes mesh and pieces to an .npz file, whole or not at all.
+        """Writes mesh and pieces to an .npz file, atomically.
 
         Raises:
-            OSError: The system refuses.
+            OSError: The file cannot be written.
         """
         write_decomposition(Path(path), self.mesh, self.method, self._data)
 
@@ -96,9 +96,9 @@ class Decomposition:
         """Reads a file of `save`.
 
         Raises:
-            DecompositionFileError: The file is damaged, foreign or of another version
-                of the format.
-            OSError: It cannot be opened.
+            DecompositionFileError: The file is damaged, of another kind or of another
+                version of the format.
+            OSError: The file cannot be opened.
         """
         mesh, method, data = read_decomposition(Path(path))
         return _assemble(mesh, _checked_method(method), data, from_cache=True)
@@ -116,27 +116,24 @@ def decompose(
 
     Args:
         mesh: Mesh from `load_mesh` or `Mesh.from_arrays`.
-        method: "surface" covers the mesh exactly: patches grown for as long as
-            they are convex and their hulls stay inside the solid (Kim, Otaduy, Lin
-            and Manocha 2003, section 5.3.1). A solid that differs from its hull
-            by rounding alone gives one piece: pieces may leave the solid by 1e-6
-            of the mesh's size, by more only in a mesh far from its origin in
-            single precision. Pieces of a surface that bounds no solid are
-            one-sided. "merged" joins such pieces within `error_m`, see
-            `drake_haptics.geometry.decomposition.approximate`. "hull" is one
-            convex hull for each component, felt all over: it fills hollows.
-            "coacd" fills solids with few pieces approximately (optional extra);
-            it fills cavities.
-        error_m: Largest departure of a piece from the mesh, m; for "merged", and only
-            there.
-        progress: Called now and then with the share done, from 0 to 1. An exception
-            that it raises stops the work and comes out here.
-        cache: Whether to use and keep results on disk, see
+        method: "surface" covers the mesh exactly: patches grow while they are convex
+            and their hulls stay inside the solid (Kim, Otaduy, Lin and Manocha 2003,
+            section 5.3.1). A solid that differs from its hull only by round-off gives
+            one piece: pieces may leave the solid by 1e-6 of the mesh's size, or by more
+            in a mesh far from its origin in single precision. Pieces of a surface that
+            bounds no solid are one-sided. "merged" joins such pieces within `error_m`,
+            see `drake_haptics.geometry.decomposition.approximate`. "hull" is one convex
+            hull for each component, all of which is felt: it fills hollows. "coacd"
+            approximates solids by few pieces (optional extra); it fills cavities.
+        error_m: Largest departure of a piece from the mesh, m; only for "merged".
+        progress: Function that is called repeatedly with the share done, from 0 to 1.
+            An exception that it raises ends the work and is passed on.
+        cache: Whether to use and store results on disk; see
             `drake_haptics.geometry.decomposition.cache`.
 
     Raises:
-        HapticsError: There is no mesh, the method is unknown, its error is missing or
-            its optional package is.
+        HapticsError: `mesh` is not a `Mesh`, the method is unknown, or its error or its
+            optional package is missing.
     """
     if not isinstance(mesh, Mesh):
         raise HapticsError(
@@ -200,7 +197,7 @@ def _find_pieces(mesh: Mesh, method: Method, progress: Progress) -> PieceData:
     else:
         hulls = coacd_hulls(mesh, progress)
     size_m = float(np.linalg.norm(mesh.report.extent))
-    # A hull is the solid itself: its hollows are felt, or a tool would fall through.
+    # A hull replaces the solid: all of it is felt, or a tool would fall into hollows.
     tolerance = math.inf if method == "hull" else _ON_MESH * size_m
     return ConvexHulls.of(hulls, tolerance, time.perf_counter() - start)
 

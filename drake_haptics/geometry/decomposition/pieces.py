@@ -1,4 +1,4 @@
-"""Convex pieces of a mesh, as stored data and as triangles to draw."""
+"""Represents convex pieces of a mesh as data to store and as triangles to draw."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class PatchLabels:
     seconds: float
 
     def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
-        """Makes the pieces, without the search."""
+        """Makes the pieces without a search."""
         return _core.assemble_surface_pieces(
             mesh.vertices, mesh.triangles, self.piece_of_triangle
         )
 
     def fits(self, mesh: Mesh) -> bool:
-        """Tells whether the labels can belong to the mesh."""
+        """Returns whether the labels can belong to the mesh."""
         return _are_labels(self.piece_of_triangle, len(mesh.triangles))
 
 
@@ -45,7 +45,7 @@ class MergedPatches:
         group_of_piece: (k,) int32 group of each patch: patches of one group are one
             piece.
         error_m: Allowed departure from the mesh, m.
-        departure_m: Bound on the largest departure that there is, m.
+        departure_m: Bound on the actual largest departure, m.
         seconds: Time that the search took, s.
     """
 
@@ -56,7 +56,7 @@ class MergedPatches:
     seconds: float
 
     def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
-        """Makes the pieces, without the search."""
+        """Makes the pieces without a search."""
         return _core.assemble_merged_pieces(
             mesh.vertices,
             mesh.triangles,
@@ -67,7 +67,7 @@ class MergedPatches:
         )
 
     def fits(self, mesh: Mesh) -> bool:
-        """Tells whether the labels can belong to the mesh."""
+        """Returns whether the labels can belong to the mesh."""
         labels = self.piece_of_triangle
         return (
             _are_labels(labels, len(mesh.triangles))
@@ -77,7 +77,7 @@ class MergedPatches:
 
 
 def _are_labels(labels: np.ndarray, count: int) -> bool:
-    """Tells whether an array is one of `count` numbers from 0 without gaps."""
+    """Returns whether an array has `count` labels from 0 without gaps."""
     if labels.dtype != np.int32 or labels.shape != (count,) or labels.min() < 0:
         return False
     return bool((np.bincount(labels, minlength=1) > 0).all())
@@ -85,14 +85,14 @@ def _are_labels(labels: np.ndarray, count: int) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class ConvexHulls:
-    """Pieces that were made elsewhere, as points whose hulls they are.
+    """Pieces that are hulls of points.
 
     Attributes:
         points: (p, 3) points of all hulls, m.
         start: (k + 1,) int32: hull i has the points start[i] to start[i + 1].
-        tolerance: Distance within which a hull's facet is on the mesh, m; infinite
-            where the hulls take the place of the mesh.
-        seconds: Time that making them took, s.
+        tolerance: Distance within which a hull's facet counts as on the mesh, m;
+            infinite if the hulls replace the mesh.
+        seconds: Time that it took to make them, s.
     """
 
     points: np.ndarray
@@ -102,13 +102,13 @@ class ConvexHulls:
 
     @staticmethod
     def of(hulls: list[np.ndarray], tolerance: float, seconds: float) -> ConvexHulls:
-        """Packs the hulls' points, each (n_i, 3)."""
+        """Packs the points of hulls, each (n_i, 3)."""
         start = np.cumsum([0, *map(len, hulls)]).astype(np.int32)
         points = np.ascontiguousarray(np.concatenate(hulls), dtype=np.float64)
         return ConvexHulls(points, start, tolerance, seconds)
 
     def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
-        """Makes the pieces and finds out which of their facets are on the mesh."""
+        """Makes the pieces, and finds which of their facets are on the mesh."""
         hulls = [
             self.points[a:b]
             for a, b in zip(self.start[:-1], self.start[1:], strict=True)
@@ -118,7 +118,7 @@ class ConvexHulls:
         )
 
     def fits(self, mesh: Mesh) -> bool:
-        """Tells whether the hulls are well formed; they may fit any mesh."""
+        """Returns whether the hulls are well formed; they may fit any mesh."""
         return bool(
             self.points.dtype == np.float64
             and self.points.ndim == 2
@@ -139,7 +139,7 @@ PieceData = PatchLabels | MergedPatches | ConvexHulls
 
 @dataclass(frozen=True, eq=False)
 class ColoredTriangles:
-    """Triangles that share no vertices, so that each is shaded flat.
+    """Triangles that share no vertices, so that shading is flat.
 
     Attributes:
         vertices: (3 k, 3), m.
@@ -160,9 +160,9 @@ class ColoredTriangles:
 def each_facet(
     pieces: Sequence[_core.ConvexPolytope],
 ) -> Iterator[tuple[int, bool, np.ndarray]]:
-    """Yields the facets of pieces that are to be drawn, one by one.
+    """Yields the facets of pieces to draw.
 
-    Of a flat piece only the front is drawn: its back is in the same place.
+    Only the front of a flat piece is drawn, because its back is in the same place.
 
     Yields:
         The index of the piece, whether the facet is on the mesh (a virtual one is
@@ -179,7 +179,7 @@ def each_facet(
 def piece_surfaces(
     pieces: list[_core.ConvexPolytope],
 ) -> tuple[ColoredTriangles, ColoredTriangles]:
-    """Returns the facets on the mesh, a color for each piece, and the virtual ones."""
+    """Returns the facets on the mesh, colored by piece, and the virtual ones."""
     corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
     owners: tuple[list[int], list[int]] = ([], [])
     for index, original, points in each_facet(pieces):

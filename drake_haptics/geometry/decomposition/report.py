@@ -1,4 +1,4 @@
-"""The report on a decomposition, in words and as data."""
+"""Reports on a decomposition, as text and as data."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rich.text import Text
 from drake_haptics.common.one_line import count
 from drake_haptics.geometry.mesh.report import length
 
-# A mesh of more pieces is mostly a scan, whose noise folds inward everywhere.
+# A mesh with more pieces is probably a scan, whose noise is concave everywhere.
 _MANY_PIECES = 2000
 
 
@@ -25,13 +25,13 @@ class DecompositionReport:
         source: File or name of the mesh.
         method: "surface", "merged", "hull" or "coacd".
         triangles: Number of triangles of the mesh.
-        one_sided_triangles: Number of those that bound no solid.
+        one_sided_triangles: Number of triangles that do not bound a solid.
         pieces: Number of convex pieces.
-        flat_pieces: Number of those without volume (coplanar patches, and needles
+        flat_pieces: Number of pieces without volume (coplanar patches, and needles
             thinner than the tolerance).
         facets: Number of facets of all pieces; a flat piece counts as one.
-        virtual_facets: Number of those that are not on the mesh.
-        seconds: Time that finding the pieces took, s.
+        virtual_facets: Number of facets that are not on the mesh.
+        seconds: Time that it took to find the pieces, s.
         from_cache: Whether the pieces were found earlier and read from the cache or a
             file.
         departure_m: Bound on the departure of any merged piece from the mesh, m; None
@@ -97,7 +97,7 @@ class DecompositionReport:
 
     def __str__(self) -> str:
         out = io.StringIO()
-        # In a notebook rich would show it at once and leave nothing to return.
+        # In a notebook rich would display it instead of returning text.
         console = Console(file=out, width=80, color_system=None, force_jupyter=False)
         console.print(self)
         return "\n".join(line.rstrip() for line in out.getvalue().splitlines())

@@ -1,4 +1,4 @@
-"""Stores decompositions in checked files, each of which is whole or absent."""
+"""Stores decompositions in files with checksums, atomically."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def read_pieces(path: Path, key: str, mesh: Mesh) -> PieceData:
     """Reads an entry of the cache.
 
     Raises:
-        DecompositionFileError: It is damaged or not the entry of that key.
+        DecompositionFileError: The entry is damaged or has another key.
         OSError: It cannot be opened.
     """
     facts, arrays = read_archive(path)
@@ -67,7 +67,7 @@ def read_decomposition(path: Path) -> tuple[Mesh, str, PieceData]:
     """Reads a file of `write_decomposition`.
 
     Raises:
-        DecompositionFileError: The file is not such a one or is damaged.
+        DecompositionFileError: The file is of another kind or is damaged.
         OSError: It cannot be opened.
     """
     facts, arrays = read_archive(path)
@@ -151,12 +151,12 @@ def write_archive(
 ) -> None:
     """Writes facts (JSON data) and arrays to an .npz file, atomically.
 
-    The file is written to the same folder under another name, flushed to the
-    disk and renamed: a reader sees the old file or the new one, also when this
-    process is killed or another one writes the same file.
+    The file is written to the same folder under another name, flushed to disk and
+    renamed, so that a reader sees the old file or the new one, even if this process is
+    killed or another one writes the same file.
 
     Raises:
-        OSError: The system refuses.
+        OSError: The file cannot be written.
     """
     header = {"format": FORMAT_NAME, "version": FORMAT_VERSION, **facts}
     text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
@@ -165,7 +165,7 @@ def write_archive(
     buffer = io.BytesIO()
     np.savez(buffer, digest=digest, **entries)  # type: ignore[arg-type]
     if path.exists() and not path.is_file():
-        path.write_bytes(buffer.getbuffer())  # a device or a pipe, not to be replaced
+        path.write_bytes(buffer.getbuffer())  # must not replace a device or a pipe
         return
     temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
     try:
@@ -177,15 +177,15 @@ def write_archive(
     except OSError as error:  # name the file that the caller knows
         raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
-        temporary.unlink(missing_ok=True)  # gone already unless something failed
+        temporary.unlink(missing_ok=True)  # exists only after a failure
 
 
 def read_archive(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Reads a file of `write_archive`; the arrays are read-only.
 
     Raises:
-        DecompositionFileError: The file is damaged, foreign or of another version of
-            the format.
+        DecompositionFileError: The file is damaged, of another kind or of another
+            version of the format.
         OSError: The file cannot be opened.
     """
     with open(path, "rb") as stream:
@@ -196,7 +196,7 @@ def read_archive(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
         digest = entries.pop("digest").tobytes()
         facts = json.loads(entries["facts"].tobytes())
         name, version = facts["format"], facts["version"]
-    except Exception as error:  # damaged archives raise whatever they run into
+    except Exception as error:  # damaged archives raise various errors
         raise DecompositionFileError(
             f"{path}: is not a decomposition file, or is damaged "
             f"({type(error).__name__}); make it again with: drake-haptics decompose"

@@ -1,4 +1,4 @@
-"""The geometry layer's viewer: a decomposition in the browser, without Drake."""
+"""Shows a decomposition in the browser, without Drake."""
 
 from __future__ import annotations
 
@@ -13,38 +13,46 @@ import meshcat.transformations
 import numpy as np
 
 from drake_haptics.common.colors import BACKGROUND_BOTTOM, BACKGROUND_TOP, VIRTUAL_FACET
+from drake_haptics.common.one_line import count
+from drake_haptics.common.web_page import extend_page
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.decomposition.pieces import (
     ColoredTriangles,
     piece_surfaces,
 )
 
-# The mesh is drawn with this largest extent, since the viewer's camera suits
-# objects of about a meter, and ours range from a peg to a room.
+# Largest extent of the drawn mesh, m, since the camera suits objects of about a meter.
 _DRAWN_EXTENT_M = 1.5
-# How far the pieces of the exploded copy move out, as a share of their distance
-# from the middle.
+# Displacement of the pieces of the exploded copy, relative to their distance from the
+# middle.
 _EXPLOSION = 0.5
 
 
 class DecompositionViewer:
     """Shows a decomposition on a web page.
 
-    The pieces are on the left in place, colored, as they cover the mesh, and on the
-    right moved apart, with their virtual facets (those that are not on the mesh) in
-    translucent gray. The page's own controls hide each.
+    On the left are the colored pieces in place, and on the right the same pieces moved
+    apart, with their virtual facets (those that are not on the mesh) in translucent
+    gray. The page's controls can hide each.
 
     Args:
         decomposition: The decomposition to show.
     """
 
     def __init__(self, decomposition: Decomposition) -> None:
-        with contextlib.redirect_stdout(io.StringIO()):  # it announces itself there
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints its address
             self._meshcat = meshcat.Visualizer()
         self._draw(decomposition)
+        pieces = count(len(decomposition.pieces), "convex piece")
+        self._caption = (
+            '<div style="position:fixed;left:1.2em;top:1.2em;padding:0.7em 1em;'
+            "font:12px/1.55 sans-serif;color:#333;background:rgba(255,255,255,0.75);"
+            f'border-radius:0.5em"><b>{pieces}</b><br>left: in place<br>'
+            "right: moved apart, in gray what is not on the mesh</div>"
+        )
 
     def close(self) -> None:
-        """Stops the web server; the page in the browser stays as it is."""
+        """Stops the web server; an open page remains."""
         server = self._meshcat.window.server_proc
         server.terminate()
         server.communicate()
@@ -57,7 +65,7 @@ class DecompositionViewer:
     def write_html(self, path: str | os.PathLike[str]) -> None:
         """Writes the page as one self-contained file."""
         with open(path, "w", encoding="utf-8") as stream:
-            stream.write(self._meshcat.static_html())
+            stream.write(extend_page(self._meshcat.static_html(), self._caption))
 
     def _draw(self, decomposition: Decomposition) -> None:
         on_mesh, virtual = piece_surfaces(decomposition.pieces)

@@ -1,1 +1,1 @@
-"""Triangle meshes: reading, checks, repair, measures. No module here needs Drake."""
+"""Reads, checks, repairs and measures triangle meshes, without Drake."""

@@ -15,21 +15,21 @@ from drake_haptics.geometry.mesh.report import Findings, Severity, length
 from drake_haptics.geometry.mesh.topology import Edges, connected_labels, find_edges
 from drake_haptics.geometry.mesh.units import guess_unit
 
-# A hand holds the tool: beyond these sizes the unit is more likely wrong than not.
+# Beyond these sizes of a tool in a hand the unit is probably wrong.
 LARGEST_USUAL_EXTENT_M = 10.0
 SMALLEST_USUAL_EXTENT_M = 1e-3
-# Programs that close holes; trimesh does it for triangles or quadrilaterals.
+# Programs that close holes; trimesh only closes triangles and quadrilaterals.
 _HOLES = "MeshLab (Close Holes) or Blender (Fill Holes)"
 _SMALL_HOLES = (
     'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
     ' m.export("new.stl")'
 )
-# Squares and cubes of coordinates are formed; beyond this they could overflow.
+# Squares and cubes of larger coordinates could overflow.
 _LARGEST_COORDINATE_M = 1e9
 
 
 def check_branching(triangles: np.ndarray, findings: Findings) -> None:
-    """Reports edges with three or more triangles, before the parts are cut there."""
+    """Reports edges with three or more triangles, at which parts are then cut."""
     branching = int((find_edges(triangles).count > 2).sum())
     findings.add(
         "non-manifold-edges",
@@ -47,7 +47,7 @@ def check_branching(triangles: np.ndarray, findings: Findings) -> None:
 def check_holes(
     triangles: np.ndarray, component: np.ndarray, findings: Findings
 ) -> None:
-    """Reports open edges and their loops; components must share no vertex."""
+    """Reports open edges and their loops; components must not share vertices."""
     edges = find_edges(triangles)
     is_open = edges.count == 1
     num_open = int(is_open.sum())
@@ -120,13 +120,13 @@ def check_size(
     ignored_unit: str | None,
     findings: Findings,
 ) -> None:
-    """Questions the unit when the size is unlike anything that a hand touches.
+    """Reports a size that suggests another unit.
 
     Args:
         extent: (3,) sides of the bounding box, m.
         meters_per_unit: Unit that was used, m.
-        ignored_unit: Unit that the file states where the user stated none.
-        findings: List that the finding is appended to.
+        ignored_unit: Unit that the file states, if the user has stated none.
+        findings: List to which the finding is appended.
     """
     if ignored_unit not in (None, "m"):
         findings.add(
@@ -161,8 +161,8 @@ def checked_arrays(
     """Returns (n, 3) float64 vertices in meters and (m, 3) int64 triangles.
 
     Raises:
-        MeshError: Either has a wrong shape or type, there is no triangle, a coordinate
-            is not finite or absurdly large, or an index is out of range.
+        MeshError: An array has a wrong shape or type, there is no triangle, a
+            coordinate is not finite or too large, or an index is out of range.
     """
     V = _as_array(vertices, "vertices")
     F = _as_array(triangles, "triangles")
@@ -210,16 +210,18 @@ def _as_array(values: Any, what: str) -> np.ndarray:
         raise MeshError(f"{what} cannot be made an array: {error}") from error
 
 
-def question_tolerance(tolerance_m: float, tool: str, extent_m: float) -> list[str]:
-    """Asks about a tolerance that is wider than the tool.
+def make_tolerance_warnings(
+    tolerance_m: float, tool: str, extent_m: float
+) -> list[str]:
+    """Returns a sentence about a tolerance that is wider than the tool.
 
     Args:
         tolerance_m: Distance at which contact begins, m.
         tool: The tool's name.
-        extent_m: Largest side of its box, m.
+        extent_m: Longest side of its bounding box, m.
 
     Returns:
-        A sentence if it is; otherwise nothing.
+        A list with the sentence; empty if the tolerance is narrower.
     """
     if tolerance_m <= extent_m:
         return []

@@ -1,9 +1,10 @@
-"""Meshes with fewer triangles, and how far their surface then is from the true one.
+"""Reduces meshes to fewer triangles, and measures the error.
 
 meshoptimizer collapses edges in the order of their quadric errors (Garland and
-Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997). The corners that
-remain are corners of the original, where they were. The folded and branching triangles
-that a collapse can leave behind are cleaned up, or the count does not work.
+Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997). The remaining
+vertices are vertices of the original at the same positions. Folded and branching
+triangles that a collapse may leave are removed; a count for which that fails is not
+used.
 """
 
 from __future__ import annotations
@@ -19,22 +20,22 @@ from drake_haptics.common.one_line import count
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.mesh.report import Finding, Severity, length
 
-# A count that leaves a clean surface is mostly found at once.
+# Numbers of counts that are tried; the first one usually works.
 _TRIES_BELOW = 12
 _GROWTH_ABOVE = 1.1
-# Options of meshoptimizer: none, and SimplifyRegularize, which takes other ways.
+# Options of meshoptimizer: none, and SimplifyRegularize, which collapses other edges.
 _OPTIONS = (0, 16)
 
 
 def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
     """Returns the mesh with at most `max_triangles`, as close to it as they allow.
 
-    A closed part stays closed, and no solid is lost. The report of the
-    result has the `decimation_error_m`, and the finding "decimated".
+    Closed parts stay closed, and no solid is lost. The report of the result has the
+    `decimation_error_m` and the finding "decimated".
 
     Args:
-        mesh: Mesh from `load_mesh` or `Mesh.from_arrays`. It is returned as it is if it
-            has no more triangles.
+        mesh: Mesh from `load_mesh` or `Mesh.from_arrays`. It is returned unchanged if
+            it has at most that many triangles.
         max_triangles: Largest number of triangles, 4 or more.
 
     Raises:
@@ -52,7 +53,7 @@ def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
         or _first_sound(mesh, _counts_above(max_triangles, all_triangles))
         or (mesh, all_triangles)
     )
-    # Few enough may come even where more are asked for.
+    # A larger count may also result in few enough triangles.
     if len(fewer.triangles) <= max_triangles:
         return _report_error(mesh, fewer)
     raise MeshError(
@@ -76,7 +77,7 @@ def _counts_above(least: int, end: int) -> Iterator[int]:
 def _first_sound(mesh: Mesh, counts: Iterator[int]) -> tuple[Mesh, int] | None:
     """Returns the mesh of the first count that works, and that count.
 
-    It may give fewer triangles, and the number of those need not be one that works.
+    The mesh may have fewer triangles than the count.
     """
     for number in counts:
         for options in _OPTIONS:
@@ -87,10 +88,10 @@ def _first_sound(mesh: Mesh, counts: Iterator[int]) -> tuple[Mesh, int] | None:
 
 
 def _collapse(mesh: Mesh, count: int, options: int) -> Mesh | None:
-    """Returns the mesh with at most `count` triangles, None if that broke it."""
-    import meshoptimizer  # only for those who want it
+    """Returns the mesh with at most `count` triangles; None if it became invalid."""
+    import meshoptimizer  # only if needed
 
-    # Only the errors are found in single precision: corners keep their coordinates.
+    # Single precision only affects errors, since vertices keep their coordinates.
     middle = mesh.vertices.mean(axis=0)
     indices = np.ascontiguousarray(mesh.triangles.ravel(), dtype=np.uint32)
     kept = np.empty_like(indices)
@@ -116,18 +117,18 @@ def _collapse(mesh: Mesh, count: int, options: int) -> Mesh | None:
 
 
 def _drop_folded(triangles: np.ndarray) -> np.ndarray:
-    """Removes pairs of triangles that lie on each other, back to back."""
+    """Removes pairs of coincident triangles with opposite winding."""
     key = np.sort(triangles, axis=1)
     _, group, size = np.unique(key, axis=0, return_inverse=True, return_counts=True)
     return triangles[size[group.ravel()] == 1]
 
 
 def _is_alike(mesh: Mesh, fewer: Mesh) -> bool:
-    """Tells whether a mesh still has all parts and no new defect."""
+    """Returns whether a mesh still has all parts and no new defect."""
     known = {finding.code for finding in mesh.report.unclean}
     is_open = bool(mesh.report.one_sided_triangles)
     return (
-        # A scan's crumbs may go.
+        # Small fragments of a scan may vanish.
         (is_open or fewer.report.components == mesh.report.components)
         and fewer.report.solids == mesh.report.solids
         and bool(fewer.report.one_sided_triangles) == is_open

@@ -1,8 +1,8 @@
 """Loads a mesh from a file or arrays, and computes its mass properties.
 
-A mesh that cannot be used is refused with a `MeshError`; every other defect is repaired
-or left as it is, and named in the mesh's report. Self-intersections are not looked for:
-the surface counts, not what encloses it.
+A mesh that cannot be used raises a `MeshError`; every other defect is repaired or left
+as it is, and named in the mesh's report. Self-intersections are not detected, because
+only the surface counts.
 """
 
 from __future__ import annotations
@@ -105,9 +105,9 @@ class Mesh:
             strict: Whether to refuse a mesh that has a defect, repairable or not.
 
         Raises:
-            MeshError: The arrays have wrong shapes or types, hold NaN or Inf or an
-                index out of range, have no triangle with an area; or `strict` and there
-                is a defect.
+            MeshError: The arrays have wrong shapes or types, a number that is not
+                finite, an index out of range, or no triangle with an area; or `strict`
+                is set and there is a defect.
         """
         findings = Findings()
         return _take_in(vertices, triangles, name, 1.0, findings, strict)
@@ -120,18 +120,18 @@ def load_mesh(
     scale: float | None = None,
     strict: bool = False,
 ) -> Mesh:
-    """Reads a mesh file; the parts of a scene are merged where they are placed.
+    """Reads a mesh file, and merges the placed parts of a scene.
 
     Args:
         path: Any format that trimesh reads, or .npz with V (n, 3) and F (m, 3);
             `package://...` names a file of this package or of Drake.
-        unit: Length unit of the file ("m", "mm", "cm", "in", ...).
+        unit: Length unit of the file, such as "mm" or "in".
         scale: Meters per unit of the file, instead of `unit`. Without either, the file
             is in meters.
         strict: Whether to refuse a mesh that has a defect, repairable or not.
 
     Raises:
-        MeshError: The file cannot be read, or see `Mesh.from_arrays`.
+        MeshError: The file cannot be read, or for the reasons in `Mesh.from_arrays`.
     """
     factor = meters_per_unit(unit, scale)
     raw = read_mesh_file(path)
@@ -260,20 +260,20 @@ def _describe_components(
 
 
 def _read_only(array: np.ndarray, dtype: Any) -> np.ndarray:
-    result = np.array(array, dtype=dtype, order="C")  # a copy: the caller's is not ours
+    result = np.array(array, dtype=dtype, order="C")  # a copy
     result.flags.writeable = False
     return result
 
 
 def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
-    """Returns the dynamics of a tool of a mesh's shape, for `AddHapticLoop`.
+    """Returns the dynamics of a tool with a mesh's shape, for `AddHapticLoop`.
 
     Args:
-        mesh: Mesh of one density, as `calc_mass_properties` takes it.
+        mesh: Mesh of uniform density, as for `calc_mass_properties`.
         mass_kg: Mass, kg.
 
     Raises:
-        ValueError: The mass is not above 0, or the mesh cannot be turned.
+        ValueError: The mass is not positive, or the rotational inertia is not.
     """
     return RigidToolDynamics(mass_kg, *calc_mass_properties(mesh, mass_kg))
 
@@ -281,8 +281,8 @@ def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
 def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.ndarray]:
     """Returns mass, center of mass and rotational inertia of a mesh.
 
-    A mesh that bounds solids is filled with one density; one that is open in any
-    part is a shell of one density per area.
+    A mesh that bounds solids has a uniform density; one that is open anywhere is a
+    shell with a uniform density per area.
 
     Args:
         mesh: The mesh, in a frame M.
@@ -304,7 +304,7 @@ def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.nda
         second = 1.0 / 12.0
     weight = weight * (mass_kg / weight.sum())
     p_MMcm = weight @ first / mass_kg
-    # The second moment of a simplex from its corners and their sum.
+    # The second moment of a simplex from its vertices and their sum.
     moment = np.zeros((3, 3))
     for corner in (a, b, c, corner_sum):
         moment += second * np.einsum("n,ni,nj->ij", weight, corner, corner)

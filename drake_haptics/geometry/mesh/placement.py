@@ -1,4 +1,4 @@
-"""Places meshes: centers one at its origin, and lowers one until it touches another."""
+"""Centers meshes at their origin, and lowers one mesh until it touches another."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.mesh.report import Finding, Severity, length
 
-# The smaller of the two meshes is this many nodes wide, unless that makes too many.
+# Number of nodes across the smaller mesh, unless that makes too many.
 _NODES_ACROSS = 100
 _MAX_NODES = 1 << 20
-# Share of the diagonal: an origin farther from the mesh is there by chance.
+# Distance of a sensible origin from the mesh, relative to the diagonal.
 _FAR_ORIGIN = 0.1
 
 
 class TouchMap:
-    """Heights of first touch of a tool that comes down anywhere near a place.
+    """Heights at which a tool that is lowered near a place first touches.
 
-    Both meshes become height fields on one grid: the environment's top and the
-    tool's bottom. The heights are exact to about the slope times the spacing, which
-    is enough to aim a hand that is soft.
+    Both meshes become height fields on one grid: the environment's top and the tool's
+    bottom. The heights are accurate to about the slope times the spacing, which is
+    enough for a soft hand.
     """
 
     def __init__(self, tool: Mesh, environment: Mesh, place: np.ndarray, reach: float):
@@ -31,7 +31,7 @@ class TouchMap:
             tool: Tool in its frame T, which keeps the world's orientation.
             environment: Environment in the world.
             place: (2,) x and y of T's origin in the world, m.
-            reach: Distance from there up to which heights will be asked for, m.
+            reach: Largest offset from there, m.
         """
         widths = [max(mesh.report.extent[:2]) for mesh in (tool, environment)]
         low = tool.vertices[:, :2].min(axis=0)
@@ -56,11 +56,11 @@ class TouchMap:
         """Returns the tool's height at first touch, coming from above.
 
         Args:
-            offset: (2,) x and y of T's origin from the place, m, not beyond the
+            offset: (2,) x and y of T's origin relative to the place, m, within the
                 reach.
 
         Returns:
-            z of T's origin in the world, m; -inf if the tool passes by.
+            z of T's origin in the world, m; -inf if the tool misses.
         """
         i, j = self._margin + np.rint(offset / self._spacing).astype(int)
         rows, columns = self._bottom.shape
@@ -75,7 +75,7 @@ def _rasterize(
     spacing: float,
     shape: np.ndarray,
 ) -> np.ndarray:
-    """Returns the largest z over each node of a grid; -inf where there is nothing.
+    """Returns the largest z over each node of a grid; -inf where there is no triangle.
 
     Args:
         vertices: (n, 3) vertices.
@@ -133,14 +133,14 @@ def _raise_to_triangle(
 def center(mesh: Mesh) -> Mesh:
     """Returns the mesh moved so that the middle of its box is at the origin.
 
-    Its report has the finding "centered", which tells by how much it moved.
+    Its report has the finding "centered" with the displacement.
 
     Args:
         mesh: Mesh from `load_mesh` or `Mesh.from_arrays`.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     middle = (low + high) / 2.0
-    # Rounding may join two corners, so the mesh is taken in again.
+    # Round-off may merge two vertices, so the mesh is checked again.
     moved = Mesh.from_arrays(
         mesh.vertices - middle, mesh.triangles, name=mesh.report.source
     )
@@ -161,9 +161,10 @@ def center(mesh: Mesh) -> Mesh:
 
 
 def find_origin_beside(mesh: Mesh) -> float | None:
-    """Returns the distance of the origin from the mesh's box, m.
+    """Returns the distance of the origin from the mesh's bounding box, m.
 
-    None where it is in the box or near it, as for a tool that is held at its end.
+    It is None if the origin is in or near the box, as for a tool that is held at its
+    end.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     beside_m = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
@@ -172,5 +173,5 @@ def find_origin_beside(mesh: Mesh) -> float | None:
 
 
 def describe_origin_beside(name: str, beside_m: float) -> str:
-    """Says that the origin of a mesh is far from it."""
+    """Returns that the origin of a mesh is far from it."""
     return f"the origin of {name} is {length(beside_m)} beside the mesh"

@@ -1,4 +1,4 @@
-"""Reads triangles from files, as they are, before any check or repair."""
+"""Reads triangles from files, without checks or repairs."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.common.one_line import count
 from drake_haptics.geometry.mesh.units import unit_of_name
 
-# Bytes of a binary STL: 80 of anything and the number of triangles; each triangle.
+# Sizes in a binary STL: header with the number of triangles, and a triangle.
 _STL_HEADER = 84
 _STL_TRIANGLE = 50
-# Length of the beginning that tells whether a file is text.
+# Number of bytes that show whether a file is text.
 _TEXT = 1000
 
 
@@ -34,7 +34,7 @@ class RawMesh:
         vertices: (n, 3) positions in the file's unit.
         triangles: (m, 3) vertex indices.
         parts: Number of placed geometries that were merged.
-        unit: Unit that the file itself states, None if it states none.
+        unit: Unit that the file states; None if it states none.
     """
 
     vertices: np.ndarray
@@ -44,7 +44,7 @@ class RawMesh:
 
 
 def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
-    """Reads every triangle of a file, scenes with their transforms applied.
+    """Reads all triangles of a file, applying the transforms of scenes.
 
     Args:
         path: Any format that trimesh reads (obj, stl, ply, off, glb, gltf, ...), or
@@ -89,7 +89,7 @@ def _read_npz(path: Path) -> RawMesh:
 
 
 def _read_with_trimesh(path: Path) -> RawMesh:
-    import trimesh  # half a second: only for those who read such a file
+    import trimesh  # takes half a second
 
     formats = trimesh.available_formats()
     if path.suffix.lower().lstrip(".") not in formats:
@@ -101,7 +101,7 @@ def _read_with_trimesh(path: Path) -> RawMesh:
     try:
         with _silent_trimesh():
             scene = trimesh.load_scene(path, process=False)
-    except Exception as error:  # each of trimesh's readers raises what it likes
+    except Exception as error:  # trimesh's readers raise various errors
         raise MeshError(
             f"{path}: cannot be read as {path.suffix} "
             f"({type(error).__name__}: {error}); the file is damaged or is not what "
@@ -112,7 +112,7 @@ def _read_with_trimesh(path: Path) -> RawMesh:
 
 @contextmanager
 def _silent_trimesh() -> Iterator[None]:
-    """Keeps trimesh from logging what our own error says."""
+    """Keeps trimesh from logging what our error says."""
     logger = logging.getLogger("trimesh")
     level = logger.level
     logger.setLevel(logging.CRITICAL)
@@ -123,14 +123,14 @@ def _silent_trimesh() -> Iterator[None]:
 
 
 def _describe_missing_triangles(path: Path) -> str:
-    """Returns why trimesh finds no triangle in a file.
+    """Returns why trimesh finds no triangles in a file.
 
-    It takes a file that is not a whole STL for one without facets.
+    It treats an incomplete STL file as one without facets.
     """
     if path.suffix.lower() != ".stl":
         return "has no triangles; point clouds and curves have no surface"
     data = path.read_bytes()
-    # The count of a binary file's triangles has a zero byte below 16 million.
+    # The number of triangles in a binary file has a zero byte below 16 million.
     if b"\0" not in data[:_TEXT]:
         if not data.lstrip().lower().startswith(b"solid"):
             return "is a text file, and no STL: its content is not what its name says"
@@ -168,7 +168,7 @@ def _merge_scene(path: Path, scene: Any) -> RawMesh:
         if not np.array_equal(X_WG, np.eye(4)):
             p_GV = p_GV @ X_WG[:3, :3].T + X_WG[:3, 3]
             if np.linalg.det(X_WG[:3, :3]) < 0:
-                F = F[:, ::-1]  # a mirror turns the winding round
+                F = F[:, ::-1]  # a reflection reverses the winding
         if F.min() < 0 or F.max() >= len(p_GV):
             raise MeshError(
                 f"{path}: a triangle names vertex "

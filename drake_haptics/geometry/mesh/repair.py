@@ -1,4 +1,4 @@
-"""Repairs a mesh: joins copies of vertices, removes copies of faces and slivers."""
+"""Repairs a mesh: joins duplicate vertices, removes duplicate faces and slivers."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from drake_haptics.geometry.mesh.topology import (
     triangle_area_vectors,
 )
 
-# Rounds of edge turning before remaining slivers are cut out. Each round turns every
-# sliver that has a proper neighbor, so chains of slivers shrink from their ends.
+# Rounds of edge flips before remaining slivers are removed. Each round flips every
+# sliver with a proper neighbor, so that chains of slivers shrink from their ends.
 _MAX_ROUNDS = 32
 
 
 def equal_vertices(vertices: np.ndarray) -> np.ndarray:
     """Returns (n,) the first vertex with bit-equal coordinates for each vertex.
 
-    Joining by a distance would weld thin gaps shut, so that is left to the
-    program that wrote the mesh. The sign of zero does not tell vertices apart.
+    Joining within a distance would close thin gaps, so that is left to the program that
+    wrote the mesh. The sign of zero is ignored.
     """
     _, first, index = np.unique(
         vertices + 0.0,  # -0.0 + 0.0 is 0.0
@@ -39,13 +39,13 @@ def join_open_parts(
 ) -> np.ndarray:
     """Joins bit-equal vertices, except those of parts that are closed as written.
 
-    A closed part needs no joining, and joining it to another that it touches
-    would make one branching surface of two bodies.
+    A closed part needs no joining, and joining it to another that it touches would make
+    one branching surface out of two bodies.
 
     Args:
         triangles: (m, 3) triangles as written.
         twin: (n,) twins from `equal_vertices`.
-        findings: List that the findings are appended to.
+        findings: List to which the findings are appended.
     """
     edges = find_edges(triangles)
     label = connected_labels(len(triangles), edges.pairs)
@@ -72,7 +72,7 @@ def join_open_parts(
 def drop_unused_vertices(
     vertices: np.ndarray, triangles: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Drops vertices of no triangle, keeping the order of the others."""
+    """Drops unused vertices, keeping the order of the others."""
     used = np.zeros(len(vertices), dtype=bool)
     used[triangles] = True
     renumbered = np.cumsum(used) - 1
@@ -82,10 +82,10 @@ def drop_unused_vertices(
 def separate_components(
     vertices: np.ndarray, triangles: np.ndarray, component: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Gives each component vertices of its own.
+    """Gives each component separate vertices.
 
-    Where components touch they then stay apart for every later step. The order
-    of the vertices is kept if none was shared, else it is that of first use.
+    Components that touch then stay separate in all later steps. The order of the
+    vertices is kept if no vertex was shared; otherwise it is that of first use.
     """
     key = triangles + component[:, None] * len(vertices)
     own, first, index = np.unique(key, return_index=True, return_inverse=True)
@@ -98,7 +98,7 @@ def separate_components(
 
 
 def distinct_faces(triangles: np.ndarray, findings: Findings) -> np.ndarray:
-    """Finds which triangles to keep of those repeated, wound alike or opposite.
+    """Finds which triangles to keep of duplicates with equal or opposite winding.
 
     Of triangles wound alike the first stays. A pair wound oppositely is either
     a sheet written once for each side, of which the first triangle stays, or
@@ -107,7 +107,7 @@ def distinct_faces(triangles: np.ndarray, findings: Findings) -> np.ndarray:
 
     Args:
         triangles: (m, 3) triangles with equal vertices joined.
-        findings: List that the findings are appended to.
+        findings: List to which the findings are appended.
 
     Returns:
         Ascending indices of the triangles to keep.
@@ -239,7 +239,7 @@ def remove_zero_area_faces(
 
 
 def find_slivers(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Marks triangles whose height is nothing but round-off.
+    """Marks triangles whose height is only round-off.
 
     That is 1e-12 of the longest side, or four units in the last place of the
     largest coordinate, which is what rounding the corners alone does.
@@ -257,7 +257,7 @@ def find_slivers(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def _turn_edges(
     vertices: np.ndarray, triangles: np.ndarray, thin: np.ndarray
 ) -> tuple[np.ndarray, bool]:
-    """Turns the long edge of each sliver that can be turned now."""
+    """Flips the long edge of each sliver that can be flipped now."""
     edges = find_edges(triangles)
     existing = {(int(a), int(b)) for a, b in edges.ends}
     touched = np.zeros(len(triangles), dtype=bool)
@@ -274,13 +274,13 @@ def _turn_edges(
             continue
         touched[f] = progressed = True
         if g < 0:
-            removed[f] = True  # a rim or a branching edge: nothing to split there
+            removed[f] = True  # a rim or branching edge has no neighbor to split
             continue
         j = next(i for i in range(3) if int(triangles[g, i]) not in (a, c))
         d, x, y = (int(triangles[g, (j + i) % 3]) for i in range(3))
         touched[g] = True
         if (min(b, d), max(b, d)) in existing:
-            removed[f] = True  # b-d is an edge already: a second one would branch
+            removed[f] = True  # b-d is already an edge, and another would branch
             continue
         existing.add((min(b, d), max(b, d)))
         triangles[g] = (x, b, d)
@@ -289,7 +289,7 @@ def _turn_edges(
 
 
 def _other_triangle(edges: Edges, num_triangles: int) -> np.ndarray:
-    """Returns for each half-edge the triangle across its edge, -1 unless just one."""
+    """Returns the triangle across each half-edge; -1 unless there is exactly one."""
     other = np.full(3 * num_triangles, -1)
     two = edges.count[edges.of_halfedge] == 2
     halfedges = np.flatnonzero(two)

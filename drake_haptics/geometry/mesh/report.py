@@ -1,4 +1,4 @@
-"""The report on a mesh: what was found, what was done, in words and as data."""
+"""Reports what was found in a mesh and what was done, as text and as data."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ class Finding:
     Attributes:
         code: Stable name, such as "duplicate-faces".
         severity: Severity of the finding.
-        count: Number of them.
+        count: Number of occurrences.
         message: Description of the finding.
-        action: Description of what was done about it.
+        action: Description of what was done.
     """
 
     code: str
@@ -77,7 +77,7 @@ class Findings(list[Finding]):
     def add(
         self, code: str, severity: Severity, count: int, message: str, action: str
     ) -> None:
-        """Adds a finding; nothing if there are 0 of them."""
+        """Adds a finding, unless its count is 0."""
         if count:
             self.append(Finding(code, severity, count, message, action))
 
@@ -92,14 +92,14 @@ class MeshReport:
         vertices: Number of vertices after intake.
         triangles: Number of triangles after intake.
         components: Number of connected parts.
-        solids: Number of those that bound a solid.
-        one_sided_triangles: Number of triangles of parts that bound no solid.
+        solids: Number of parts that bound a solid.
+        one_sided_triangles: Number of triangles of parts that do not bound a solid.
         extent: Size (x, y, z) of the bounding box, m.
         area: Area of the surface, m².
         volume: Volume of the solids, m³, counted once for each; cavities subtract.
         findings: Findings in the order in which they were made.
         decimation_error_m: Largest distance between this surface and that of the file,
-            m; 0 where no triangles were taken away.
+            m; 0 without decimation.
     """
 
     source: str
@@ -132,7 +132,7 @@ class MeshReport:
 
     @property
     def verdict(self) -> str:
-        """One sentence that says what the mesh is good for."""
+        """One sentence that says how the mesh can be used."""
         if self.solids == self.components:
             plural = "one solid" if self.solids == 1 else count(self.solids, "solid")
             return f"Usable as {plural}: closed and wound outward."
@@ -213,7 +213,7 @@ class MeshReport:
         return table
 
     def _findings(self) -> Table:
-        """The findings, the most important first."""
+        """The findings, most important first."""
         table = Table.grid(padding=(0, 2))
         order = list(_COLORS)
         for finding in sorted(self.findings, key=lambda f: order.index(f.severity)):
@@ -225,14 +225,14 @@ class MeshReport:
 
     def __str__(self) -> str:
         out = io.StringIO()
-        # In a notebook rich would show it at once and leave nothing to return.
+        # In a notebook rich would display it instead of returning text.
         console = Console(file=out, width=80, color_system=None, force_jupyter=False)
         console.print(self)
         return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
 
 
 def length(meters: float) -> str:
-    """Writes a length in the unit that people would use for it."""
+    """Writes a length in its usual unit."""
     if meters >= 1 or meters == 0:
         return f"{meters:.4g} m"
     if meters >= 1e-3:
@@ -241,7 +241,7 @@ def length(meters: float) -> str:
 
 
 def _power(value: float, exponent: int) -> str:
-    """Writes an area or a volume in the unit that people would use for it."""
+    """Writes an area or a volume in its usual unit."""
     mark = {2: "²", 3: "³"}[exponent]
     # From a liter on, 0.001 m³ reads better than 1000 cm³.
     for least_m, unit, per_m in ((0.1, "m", 1), (0.01, "cm", 100)):

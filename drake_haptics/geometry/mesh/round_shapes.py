@@ -1,8 +1,8 @@
-"""Corners of convex polytopes that stand for round shapes, within a stated error.
+"""Makes corners of convex polytopes that approximate round shapes.
 
-The error is shared by both sides: corners are outside of the true surface and the
-middles of facets inside of it by at most the chord error, so that with as few corners
-the shape is neither too large nor too small. Flat faces are exact.
+The error is on both sides: corners are outside the true surface and the middles of
+facets inside it by at most the chord error, so that the shape is neither too large nor
+too small. Flat faces are exact.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from drake_haptics.common.value_checks import check_positive
 
-# With more corners a hull takes seconds and says no more to a hand.
+# With more corners a hull takes seconds, and a hand feels no difference.
 _LARGEST_FREQUENCY = 40
 _MOST_SIDES = 720
 
@@ -28,19 +28,19 @@ def make_ellipsoid_corners(
 ) -> np.ndarray:
     """Returns corners (n, 3) of an ellipsoid, or of a ball, about the origin.
 
-    A geodesic sphere is stretched: its error grows at most with the longest axis.
+    It is a stretched geodesic sphere, whose error scales at most with the longest axis.
 
     Args:
         semi_axes_m: Half lengths along x, y, z, m.
         chord_error_m: Largest distance of the hull of the corners from the surface, m.
 
     Raises:
-        ValueError: The error is not positive, or so small that it takes more than
-            some ten thousand corners.
+        ValueError: The error is not positive, or requires more than about ten thousand
+            corners.
     """
     largest = max(semi_axes_m)
     check_positive(chord_error_m=chord_error_m)
-    # The error goes with the square of the facets' size.
+    # The error is proportional to the square of the facets' size.
     frequency = max(1, int(0.3 * np.sqrt(largest / chord_error_m)))
     while True:
         if frequency > _LARGEST_FREQUENCY:
@@ -61,7 +61,7 @@ def make_capsule_corners(
 ) -> np.ndarray:
     """Returns corners (n, 3) of a capsule along z about the origin.
 
-    It is the hull of a ball at either end of the segment, with the ball's error.
+    It is the hull of a ball at each end of the segment, with the ball's error.
 
     Args:
         radius_m: Radius of the ball, m.
@@ -89,8 +89,7 @@ def make_cylinder_corners(
         chord_error_m: Largest distance of the sides from the round surface, m.
 
     Raises:
-        ValueError: The error is not positive, or so small that it takes more than
-            some hundred sides.
+        ValueError: The error is not positive, or requires more than some hundred sides.
     """
     check_positive(chord_error_m=chord_error_m)
     sides = 3
@@ -111,10 +110,10 @@ def make_cylinder_corners(
 
 
 def _split_error(height: float) -> tuple[float, float]:
-    """Returns a scale that puts a unit shape's error on both sides, and the error.
+    """Returns a scale that balances a unit shape's error, and the error.
 
     Args:
-        height: Least distance of a facet's plane from the middle, corners being at 1.
+        height: Least distance of a facet's plane from the middle, with corners at 1.
     """
     return 2.0 / (1.0 + height), (1.0 - height) / (1.0 + height)
 
@@ -160,10 +159,10 @@ def _geodesic(frequency: int) -> tuple[np.ndarray, float]:
     )
     points = np.concatenate([weights @ face for face in faces])
     points /= np.linalg.norm(points, axis=1, keepdims=True)
-    # All faces are alike, so the first says how near facets come.
+    # All faces are alike, so the first one determines the least distance.
     a, b, c = np.swapaxes(points[triangles], 0, 1)
     normal = np.cross(b - a, c - a)
     height = np.abs(np.einsum("ni,ni->n", normal, a)) / np.linalg.norm(normal, axis=1)
-    # Points on the icosahedron's sides came from both faces.
+    # Points on the icosahedron's edges are duplicates from both faces.
     _, kept = np.unique(np.round(points, 9), axis=0, return_index=True)
     return points[kept], float(height.min())

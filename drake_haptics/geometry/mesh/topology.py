@@ -1,4 +1,4 @@
-"""Edges, connectivity and orientation of triangle meshes, vectorized."""
+"""Finds edges, connectivity and orientation of triangle meshes."""
 
 from __future__ import annotations
 
@@ -90,13 +90,13 @@ def orientation_flips(
 ) -> tuple[IntArray, np.ndarray, np.ndarray]:
     """Finds components across two-sided edges, and how to wind each coherently.
 
-    It works on the double cover: two nodes for each triangle, as wound and turned over.
-    A component is orientable exactly when the two stay unconnected; of one that is not,
-    nothing is turned over.
+    It works on the double cover, with two nodes for each triangle: as wound and
+    flipped. A component is orientable if and only if the two are not connected; in one
+    that is not, nothing is flipped.
 
     Returns:
         component: (m,) component of each triangle, 0 ... k - 1.
-        flip: (m,) whether to turn it over, as its component's first triangle is wound.
+        flip: (m,) whether to flip it to match its component's first triangle.
         orientable: (k,) whether each component is orientable.
     """
     component, k = number_labels(connected_labels(num_triangles, edges.pairs))

@@ -17,7 +17,7 @@ METERS_PER_UNIT: dict[str, float] = {
     "ft": 0.3048,
 }
 
-# Units to guess for files whose unit is not the one stated.
+# Units to guess for files with a wrong unit.
 _LIKELY_UNITS = ("mm", "cm", "in", "m", "km")
 _OF_A_HAND_M = (0.02, 1.0)
 
@@ -43,7 +43,7 @@ _LONG_NAMES = {
 
 
 def meters_per_unit(unit: str | None, scale: float | None) -> float:
-    """Returns the factor that turns a file's coordinates into meters.
+    """Returns the factor from a file's coordinates to meters.
 
     Args:
         unit: Name of a length unit, such as "mm"; None if not stated.
@@ -77,10 +77,10 @@ def meters_per_unit(unit: str | None, scale: float | None) -> float:
 
 
 def guess_unit(extent: float, smallest_m: float, largest_m: float) -> str | None:
-    """Returns the unit in which a size would be a usual one, the likeliest first.
+    """Returns the likeliest unit in which a size would be usual, or None.
 
     Args:
-        extent: Size in the file's unit, whatever that is.
+        extent: Size in the file's unit.
         smallest_m: Smallest usual size, m.
         largest_m: Largest usual size, m.
     """
@@ -92,7 +92,7 @@ def guess_unit(extent: float, smallest_m: float, largest_m: float) -> str | None
 
 
 def unit_of_name(name: str | None) -> str | None:
-    """Returns the short unit for a name as files write it, None if unknown."""
+    """Returns the short unit for a name in a file; None if it is unknown."""
     if name is None:
         return None
     short = _LONG_NAMES.get(name.lower(), name.lower())

@@ -15,7 +15,7 @@ from drake_haptics.geometry.mesh.topology import (
     winding_numbers,
 )
 
-# Points of a component that must all be inside another one to call it nested.
+# Number of points of a nested component that must all be inside the other.
 _NESTING_SAMPLES = 12
 
 
@@ -53,15 +53,14 @@ class Winding:
 def wind_components(
     vertices: np.ndarray, triangles: np.ndarray, findings: Findings
 ) -> Winding:
-    """Splits into components, winds each coherently and solids outward.
+    """Splits a mesh into components, and winds each coherently and solids outward.
 
-    Components are joined across edges with exactly two triangles. Within one,
-    the triangles that disagree with the larger area are turned over. A closed
-    component counts as a solid of its own, also inside another (a tooth's dentin
-    in its enamel), so it is turned outward if it was written inward; except that
-    an inward one inside an outward one is the wall of a cavity and stays. If the
-    outermost component is inward the whole nest was written inside out, and is
-    turned as a whole.
+    Components are joined across edges with exactly two triangles. Within a component,
+    triangles that disagree with the larger area are flipped. A closed component counts
+    as a separate solid, even inside another (like a tooth's dentin in its enamel), so
+    that it is flipped if it is wound inward. However, an inward one inside an outward
+    one is the wall of a cavity and is kept. If the outermost component is wound inward,
+    everything inside it is flipped with it.
     """
     m = len(triangles)
     component, flip, orientable = orientation_flips(m, find_edges(triangles))
@@ -113,7 +112,7 @@ def _judge_nesting(
     closed: np.ndarray,
     volume: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Decides which closed components to turn over and which are cavities."""
+    """Decides which closed components to flip and which are cavities."""
     inverted = np.zeros(len(closed), dtype=bool)
     cavity = np.zeros(len(closed), dtype=bool)
     if not (closed & (volume < 0)).any():
@@ -137,7 +136,7 @@ def _containers(
     closed: np.ndarray,
     volume: np.ndarray,
 ) -> dict[int, list[int]]:
-    """Returns for each closed component the closed components around it."""
+    """Returns the closed components around each closed component."""
     candidates = np.flatnonzero(closed)
     order = np.argsort(component, kind="stable")
     start = np.searchsorted(component[order], np.arange(len(closed) + 1))

@@ -1,1 +1,1 @@
-"""Shapes that Drake knows, as meshes and convex pieces."""
+"""Converts shapes of Drake to meshes and convex pieces."""

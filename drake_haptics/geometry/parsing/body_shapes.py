@@ -1,4 +1,4 @@
-"""Makes convex pieces of the shapes that a plant's body has in Drake."""
+"""Makes convex pieces of the shapes of a plant's body."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from drake_haptics.geometry.mesh.round_shapes import (
 )
 
 _ROLE_NAMES = {Role.kProximity: "proximity", Role.kIllustration: "illustration"}
-# glTF's y axis is up; Drake turns it to its own z.
+# glTF's y axis is up; Drake rotates it to z.
 _Y_UP = (".gltf", ".glb")
 _R_DRAKE_GLTF = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -68,25 +68,26 @@ def decompose_body(
 ) -> _core.ConvexPieces:
     """Returns all shapes of a body as one set of convex pieces in the body's frame.
 
-    A `Mesh` keeps its true, possibly non-convex shape, where Drake's point contact
-    takes its convex hull; it is cut into pieces by `decompose`. `Box` is exact,
-    `Convex` the hull of its points, and `Sphere`, `Cylinder`, `Capsule` and
-    `Ellipsoid` are convex polytopes (`drake_haptics.geometry.mesh.round_shapes`): one
-    piece each. Where shapes of a body overlap, each keeps its own surface.
+    A `Mesh` keeps its true, possibly non-convex shape, unlike in Drake's point contact,
+    which uses its convex hull; `decompose` cuts it into pieces. `Box` is exact,
+    `Convex` the hull of its points, and `Sphere`, `Cylinder`, `Capsule` and `Ellipsoid`
+    are convex polytopes (`drake_haptics.geometry.mesh.round_shapes`): one piece each.
+    Overlapping shapes of a body keep their surfaces.
 
     Args:
         plant: Plant that is registered with a scene graph.
         inspector: Inspector of that scene graph's model.
         body: Body of the plant.
         role: Role of the shapes that count: proximity or illustration.
-        chord_error_m: Largest distance of a polytope from the round shape that it
-            stands for, m.
-        progress: Called while meshes are cut with the share done, from 0 to 1.
+        chord_error_m: Largest distance between round shapes and the polytopes that
+            approximate them, m.
+        progress: Function that is called while meshes are decomposed, with the share
+            done, from 0 to 1.
 
     Raises:
-        ValueError: The body has no such shapes, one of them is unbounded or cannot be
-            touched, the role is another one, or the chord error is out of range. A
-            mesh that cannot be treated is a `MeshError`.
+        ValueError: The body has no such shapes, one of them is unbounded or only drawn,
+            the role is not supported, or the chord error is out of range. A mesh that
+            cannot be used is a `MeshError`.
     """
     if role not in _ROLE_NAMES:
         raise ValueError(f"role must be kProximity or kIllustration, is {role.name}")
@@ -136,7 +137,7 @@ def _decompose_shape(
     mesh = IntakeMesh.from_arrays(
         raw.vertices, raw.triangles, name=shape.source().description()
     )
-    # Cut in its own frame, so that it is cut alike, and once, wherever it is put.
+    # Cut in the mesh's frame, so that the pieces are cached for all poses.
     pieces = decompose(mesh, progress=progress).core
     return _core.assemble_surface_pieces(
         pieces.vertices @ X_BG[:3, :3].T + X_BG[:3, 3],
@@ -146,7 +147,7 @@ def _decompose_shape(
 
 
 def _find_corners(shape: Shape, chord_error_m: float) -> np.ndarray:
-    """Returns points (n, 3) in the shape's frame whose hull stands for it, m."""
+    """Returns points (n, 3) in the shape's frame whose hull approximates it, m."""
     find: dict[type, Callable[..., np.ndarray]] = {
         Convex: _find_hull_corners,
         Box: lambda s: make_box_corners(s.size()),
@@ -170,7 +171,7 @@ def _find_corners(shape: Shape, chord_error_m: float) -> np.ndarray:
 
 
 def _find_hull_corners(shape: Convex) -> np.ndarray:
-    """Returns the corners (n, 3) of a hull; Drake finds those of a file or points."""
+    """Returns the corners (n, 3) of the hull that Drake finds."""
     try:
         hull = shape.GetConvexHull()
     except RuntimeError as error:
@@ -217,7 +218,7 @@ def read_mesh_source(source: MeshSource, scale3: np.ndarray) -> RawMesh:
     """Reads a mesh as Drake places it in the frame of its geometry.
 
     Args:
-        source: Source that names a file, or holds it.
+        source: Source that names or contains a file.
         scale3: (3,) meters per unit of the file, along each axis.
 
     Returns:
@@ -231,7 +232,7 @@ def read_mesh_source(source: MeshSource, scale3: np.ndarray) -> RawMesh:
     if source.extension() in _Y_UP:
         vertices = vertices @ _R_DRAKE_GLTF.T
     if np.prod(scale3) < 0.0:
-        triangles = triangles[:, ::-1]  # a mirror turns the winding round
+        triangles = triangles[:, ::-1]  # a reflection reverses the winding
     return RawMesh(vertices * scale3, triangles)
 
 
@@ -243,14 +244,14 @@ def _read(source: MeshSource) -> RawMesh:
         try:
             return read_mesh_file(path)
         except MeshError as error:
-            # The file is gone when the message is read.
+            # The temporary file no longer exists when the message is read.
             raise MeshError(
                 str(error).replace(str(path), source.description())
             ) from error
 
 
 def _write(mesh: InMemoryMesh, folder: Path) -> Path:
-    """Writes a mesh in memory, and the files that it names, for a reader of files."""
+    """Writes a mesh in memory, and the files that it names, to a folder."""
     for name, file in mesh.supporting_files.items():
         if not (folder / name).resolve().is_relative_to(folder.resolve()):
             raise MeshError(f"names the file {name!r} outside of its folder")

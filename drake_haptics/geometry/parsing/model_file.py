@@ -25,7 +25,7 @@ _SUFFIXES = (".sdf", ".urdf", ".xml", ".yaml")
 
 
 def is_model_file(path: str | os.PathLike[str]) -> bool:
-    """Tells whether a file's name is that of a model that Drake's parser reads."""
+    """Returns whether a file has a suffix of models that Drake's parser reads."""
     return Path(path).suffix.lower() in _SUFFIXES
 
 
@@ -37,15 +37,15 @@ def load_model_mesh(
 ) -> Mesh:
     """Reads the collision shapes of a model as one mesh.
 
-    Joints stay at their default positions. Round shapes become polytopes, see
+    Joints are at their default positions. Round shapes become polytopes; see
     `drake_haptics.geometry.parsing.body_shapes`.
 
     Args:
-        path: SDF, URDF or MJCF, or model directives (.dmd.yaml); as a whole rigid.
-            `package://...` names one of this package or of Drake.
+        path: SDF, URDF, MJCF or model directives (.dmd.yaml), which is treated as
+            rigid. `package://...` names one of this package or of Drake.
         scale: Factor on all lengths.
-        chord_error_m: Largest distance of a polytope from its round shape, m, before
-            scaling.
+        chord_error_m: Largest distance between round shapes and the polytopes that
+            approximate them before scaling, m.
 
     Returns:
         The mesh in the model's frame, m.

@@ -6,6 +6,8 @@ import {say} from "./link.js";
 const choices = new Map();
 const switches = {effect: new Map(), view: new Map()};
 const handles = new Map();
+// Requests of switches are numbered, so that a state from before one does not undo it.
+let asked = 0;
 
 export function makeChoices(list) {
   find("contact").querySelectorAll(".choice").forEach(row => row.remove());
@@ -38,7 +40,8 @@ export function makeSwitches(kind, list) {
     }
     input.addEventListener("change", () => {
       row.classList.add("waiting");
-      say({do: kind, name, on: input.checked});
+      row.dataset.asked = ++asked;
+      say({do: kind, name, on: input.checked, number: asked});
     });
     made.set(name, {input, file});
     folder.append(row);
@@ -67,10 +70,13 @@ export function showSwitches(state) {
   }
   for (const [kind, values] of [["effect", state.effects ?? {}], ["view", state.views ?? {}]]) {
     for (const [name, {input, file}] of switches[kind]) {
+      const row = input.parentElement;
+      // A page that no longer drives is not answered.
+      if (row.classList.contains("waiting") && !input.disabled && row.dataset.asked > state.answered) continue;
       input.checked = Boolean(values[name]);
-      input.parentElement.classList.remove("waiting");
+      row.classList.remove("waiting");
       // Views are no matter of a scene file.
-      input.parentElement.classList.toggle("changed", file !== undefined && input.checked !== file);
+      row.classList.toggle("changed", file !== undefined && input.checked !== file);
     }
   }
   for (const [name, input] of handles) input.checked = name === state.handle;

@@ -1,4 +1,4 @@
-"""Other libraries' ways to a contact wrench, on the motion that settings are held to.
+"""Calculates contact wrenches by other libraries on a study's motion.
 
 `run_peers` (in `run.py`) returns a row for each.
 """

@@ -16,21 +16,21 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
 
-# Number of passes that time each tick; its time is that of the middle of them.
+# Number of passes that time each tick, whose middle half is averaged.
 PASSES = 3
 
 
 @dataclass(frozen=True, eq=False)
 class PeerProblem:
-    """A tool that moves as recorded among objects at rest; without effects.
+    """A tool that moves as recorded among objects at rest, without effects.
 
     Attributes:
         scene: Scene with the gains.
         motion: Motion of the tool.
         tool: Tool in convex pieces.
         objects: Objects in convex pieces.
-        part: Queries to this package's core for the same problem, with the force law.
-        f_W: (n, 3) force of the reference, N, to fit gains that the scene lacks.
+        part: Calls to this package's core for the same problem, with the force law.
+        f_W: (n, 3) force of the reference, N, for fitting gains that the scene lacks.
     """
 
     scene: Scene
@@ -55,7 +55,7 @@ class PeerAnswers:
         distance: (n,) distance of the deepest contact, m; infinite without a contact.
         tolerance_m: Distance up to which the library found contacts, m.
         seconds: (n,) time inside the library, s.
-        remark: Further parameters of the method, in words. Defaults to empty.
+        remark: Further parameters of the method. Defaults to none.
     """
 
     F_To_W: np.ndarray
@@ -66,10 +66,10 @@ class PeerAnswers:
 
 
 class Answer(Protocol):
-    """A way to a contact wrench."""
+    """A method that calculates contact wrenches."""
 
     def __call__(self, problem: PeerProblem) -> PeerAnswers:
-        """Answers the whole motion; raises where the library cannot."""
+        """Answers the whole motion; raises an error if the library cannot."""
         ...
 
 
@@ -83,7 +83,7 @@ def make_peer_problem(
         motion=motion,
         tool=haptic.tool,
         objects=haptic.environment,
-        # Braking searches further, but is not contact.
+        # Braking searches farther, but is not contact.
         part=replace(part, search_m=part.tolerance_m),
         f_W=truth.F_Tcm_W[:, 3:],
     )
@@ -91,7 +91,7 @@ def make_peer_problem(
 
 @dataclass(frozen=True, eq=False)
 class FoundContacts:
-    """The contacts at each of k ticks, tick after tick, n in all.
+    """The contacts at each of k ticks, n in all.
 
     Attributes:
         start: (k + 1,) first rows: tick i has the rows from start[i] to start[i + 1].
@@ -116,7 +116,7 @@ class FoundContacts:
         """Returns contacts whose numbers are in rows.
 
         Args:
-            start: (k + 1,) first rows, see the attribute.
+            start: (k + 1,) first rows; see the attribute.
             rows: (n, 11) distance, normal, both witness points, and the object.
             seconds: (k,) times of finding them, s.
         """
@@ -130,7 +130,7 @@ class FoundContacts:
 def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
     """Returns the wrenches of contacts by this package's clustering and penalty law.
 
-    Only the query then differs. A contact without a finite normal exerts no force.
+    So only the query differs. A contact without a finite normal exerts no force.
     """
     part, motion = problem.part, problem.motion
     cluster, force = part.make_clustering(), part.make_force()

@@ -36,15 +36,15 @@ _SAME_LAW = "of the same pieces, this package's law"
 
 @dataclass(frozen=True)
 class PeerMethod:
-    """One way to a contact wrench.
+    """One method of another library.
 
     Attributes:
         library: Name of the library.
-        package: Package that is installed with pip.
+        package: Name of the package for pip.
         module: Module of this folder that imports the library.
         function: Function of the module, an `Answer`.
         words: Description of the query, for the report.
-        for_pieces: Whether it is the same as another method if the tool is one piece.
+        for_pieces: Whether it equals another method if the tool is one piece.
     """
 
     library: str
@@ -96,10 +96,10 @@ def run_peers(
     """Compares other libraries' contact wrenches with the truth.
 
     At each tick the tool has its recorded pose and velocity; objects rest. All have the
-    scene's stiffness and damping and no friction. Effects are left out, of the truth
-    too. Times are those inside the library: in C++ around its query (this package's law
-    is not counted), from Python around the one call to Drake. A tick's time is that of
-    the middle of several passes.
+    scene's stiffness and damping and no friction. Effects are left out, also of the
+    truth. Times are those inside the library: in C++ around its query (without this
+    package's law), in Python around the one call to Drake. The time of a tick is the
+    mean of the middle half of several passes.
 
     Returns:
         A row for each of `METHODS`, with the reason if a library is absent or fails.
@@ -118,7 +118,7 @@ def run_peers(
 
 
 def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
-    """Returns the row of one method, see `run_peers`."""
+    """Returns the row of one method; see `run_peers`."""
     if method.for_pieces and len(problem.tool.pieces) == 1:
         return _explain(method.library, method, "the tool is one piece: its hull")
     try:
@@ -138,7 +138,7 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
 
 
 def _leave_out_effects(scene: Scene) -> Scene:
-    """Returns a copy of a scene without effects, whose materials name none."""
+    """Returns a copy of a scene without effects, also in its materials."""
     bare = copy.deepcopy(scene)
     bare.effects = Effects()
     for item in bare.environment:

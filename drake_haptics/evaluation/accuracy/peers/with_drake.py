@@ -48,21 +48,21 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
 
-# Inertia of a tool whose motion is given; it changes nothing.
+# Inertia of a tool whose motion is given, which does not matter.
 _MASS_KG, _RADIUS_M = 0.1, 0.1
 # Forces on a rigid object are proportional to the modulus, so it is fitted afterwards.
 _MODULUS_PA = 1e6
-# Pieces and meshes are exact; this is for round shapes alone, m.
+# For round shapes only, m; pieces and meshes are exact.
 _RESOLUTION_M = 2e-3
 _AddTool = Callable[[MultibodyPlant, RigidBody, ProximityProperties], None]
 
 
 @dataclass(frozen=True)
 class DrakePlant:
-    """A continuous plant, whose contacts are a function of pose and velocity alone.
+    """A continuous plant, whose contacts depend only on pose and velocity.
 
     Attributes:
-        plant: Plant, finalized.
+        plant: Finalized plant.
         scene_graph: Scene graph with its geometry.
         tool: Body of the tool in the plant.
         root: Context of the diagram.
@@ -80,16 +80,16 @@ class DrakePlant:
         ask: Callable[[Any], Any],
         read: Callable[[int, Any], None],
     ) -> np.ndarray:
-        """Moves the tool as recorded and asks at each tick.
+        """Moves the tool as recorded and evaluates a port at each tick.
 
         Args:
             motion: Motion of the tool.
             port: Port that is evaluated at each tick.
             ask: Function of the port's value that returns the answer.
-            read: Callback that takes the tick and the answer, once for each tick.
+            read: Function that is called with each tick and its answer.
 
         Returns:
-            (n,) times of evaluating and asking, s, the update of poses included.
+            (n,) times of evaluating and answering, s, including the update of poses.
         """
         context = self.plant.GetMyMutableContextFromRoot(self.root)
         of_port = port.get_system().GetMyContextFromRoot(self.root)
@@ -116,7 +116,7 @@ def make_plant(
     Args:
         contact_model: Name of the contact model, see `MultibodyPlantConfig`.
         X_WO: (m, 7) poses of the objects.
-        add: Callback that gives a body its geometry: it takes the plant, the body, the
+        add: Function that adds geometry to a body; it takes the plant, the body, the
             object's index or -1 for the tool, and the geometry's pose in the body.
     """
     # Qhull warns of flat pieces.
@@ -139,12 +139,12 @@ def _build(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakePlant
 
 
 def answer_on_pieces(problem: PeerProblem) -> PeerAnswers:
-    """Takes the plant's own forces on the same pieces."""
+    """Returns the plant's forces on the same pieces."""
     return _read_forces(problem, _add_pieces(problem))
 
 
 def answer_on_meshes(problem: PeerProblem) -> PeerAnswers:
-    """Takes the plant's own forces on `Mesh` shapes, whose hulls it uses."""
+    """Returns the plant's forces on `Mesh` shapes, of which it uses the hulls."""
 
     def add(
         plant: MultibodyPlant, body: RigidBody, which: int, X_BM: RigidTransform
@@ -157,7 +157,7 @@ def answer_on_meshes(problem: PeerProblem) -> PeerAnswers:
 
 
 def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
-    """Takes signed distances within the tolerance, of the same pieces."""
+    """Answers by signed distances of the same pieces within the tolerance."""
     drake = make_plant("point", problem.part.X_WO, _add_pieces(problem))
     owners = _find_owners(problem, drake)
     start = [0]
@@ -187,7 +187,7 @@ def _find_part(
     """Returns the shape of the tool (-1) or an object, and its contact material."""
     stiffness, damping = problem.part.stiffness_N_per_m, problem.part.damping_Ns_per_m
     if np.ptp(stiffness) > 0.0 or np.ptp(damping) > 0.0:
-        # The tool would need another surface for each object.
+        # The tool would need a different surface for each object.
         raise ValueError("the objects differ in stiffness or damping")
     surface = make_surface(float(stiffness[0]), float(damping[0]))
     return problem.tool if which < 0 else problem.objects[which], surface
@@ -233,7 +233,7 @@ def _find_owners(
         for piece in drake.plant.GetCollisionGeometriesForBody(drake.tool)
     }
     anchored = iter(drake.plant.GetCollisionGeometriesForBody(drake.plant.world_body()))
-    # They are in the order in which they were added.
+    # Geometries are in the order in which they were added.
     for i, part in enumerate(problem.objects):
         for _ in part.pieces:
             piece = next(anchored)
@@ -258,7 +258,7 @@ def _to_row(
 
 
 def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
-    """Makes the tool a compliant `Mesh`, which Drake fills as its convex hull."""
+    """Answers with a compliant `Mesh` as the tool, of which Drake fills the hull."""
 
     def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
         shape = to_drake_mesh(problem.tool)
@@ -268,7 +268,7 @@ def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
 
 
 def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
-    """Makes the tool's pieces compliant, each by itself."""
+    """Answers with separately compliant pieces of the tool."""
 
     def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
         register_pieces(plant, body, RigidTransform(), problem.tool, soft)
@@ -277,10 +277,10 @@ def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
 
 
 def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
-    """Takes the plant's hydroelastic forces; there is no distance.
+    """Returns the plant's hydroelastic forces, without distances.
 
-    No modulus corresponds to the scene's stiffness: the one is taken whose forces are
-    nearest to the reference's, in least squares over the whole motion.
+    No modulus corresponds to the scene's stiffness, so it is fitted to the reference's
+    forces by least squares over the whole motion.
     """
     rigid, soft = _make_surface(), _make_surface()
     AddRigidHydroelasticProperties(_RESOLUTION_M, rigid)
@@ -333,7 +333,7 @@ def _make_surface() -> ProximityProperties:
 
 
 def _fit(f_W: np.ndarray, wanted_W: np.ndarray) -> float:
-    """Returns the factor that brings forces nearest to wanted ones; 1 if all are 0.
+    """Returns the factor that fits forces best to others; 1 if all are 0.
 
     Raises:
         ValueError: The factor is not positive.

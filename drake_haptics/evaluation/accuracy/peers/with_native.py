@@ -43,7 +43,7 @@ _CONTACT_SIZE = 11
 
 
 def answer_with_coal(problem: PeerProblem) -> PeerAnswers:
-    """Takes the signed distance of all pairs whose boxes overlap, in C++."""
+    """Answers by signed distances of all pairs whose boxes overlap, in C++."""
     native = _load_coal()
     scene = native.coal_contacts_new()
     try:
@@ -74,9 +74,9 @@ def _load_coal() -> ctypes.CDLL:
 
 
 def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
-    """Calls `mj_collision`, with poses and trees brought up to date, in C.
+    """Answers by `mj_collision`, with updated poses and trees, in C.
 
-    It returns one contact for each pair of pieces, as this package's law takes them.
+    It returns one contact for each pair of pieces, as this package's law expects.
     """
     native = _load_mujoco()
     scene = open_mjcf(native.mujoco_contacts_new, _make_mjcf(problem))
@@ -129,13 +129,9 @@ def _load_mujoco() -> ctypes.CDLL:
 def _copy_contacts(
     copy: Any, scene: int, count: int, seconds: np.ndarray
 ) -> FoundContacts:
-    """Returns the contacts that an adapter holds after a run.
+    """Returns the contacts in an adapter after a run that returned their number.
 
-    Args:
-        copy: Function of the adapter that copies contacts.
-        scene: Handle of the adapter's scene.
-        count: Number of contacts, which its run returned.
-        seconds: (PASSES, k) times of each tick, the clock included, s.
+    The times (PASSES, k) of each tick, s, include those of the clock.
     """
     start = np.empty(seconds.shape[1] + 1, dtype=np.int32)
     rows = np.empty((count, _CONTACT_SIZE))

@@ -1,1 +1,1 @@
-"""Convex pairs in each library that is measured, one module per library."""
+"""Queries convex pairs in other libraries, with one module for each."""

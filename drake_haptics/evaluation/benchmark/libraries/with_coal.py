@@ -1,4 +1,4 @@
-"""Convex pairs in coal, in the three ways it can start GJK."""
+"""Queries convex pairs in coal, with its three starts of GJK."""
 
 from __future__ import annotations
 
@@ -34,9 +34,8 @@ _NATIVE = load_coal_native(
 class CoalQuery:
     """One pair: coal's `ComputeDistance` with its default tolerances, in C++.
 
-    Cold starts from a fixed direction, boxes from the centers of the bounding boxes.
-    Warm means that each query is handed the last one's guess and support vertices
-    (`updateGuess`).
+    Cold starts from a fixed direction, boxes from the centers of the bounding boxes,
+    and warm from the last query's guess and support vertices (`updateGuess`).
     """
 
     def __init__(self, pair: PairShape, start: coal.GJKInitialGuess):

@@ -1,4 +1,4 @@
-"""Convex pairs in this package."""
+"""Queries convex pairs in this package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Convex pairs in FCL, through python-fcl: `distance` with signed distances."""
+"""Queries convex pairs in FCL, by `distance` of python-fcl."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from drake_haptics.evaluation.measuring.timing import CallTimer
 
 
 class FclQuery:
-    """One pair, less what the same call costs for two spheres."""
+    """One pair, minus the time of the same call for two spheres."""
 
     def __init__(self, pair: PairShape):
         self._A = fcl.CollisionObject(_convex(pair.A_vertices))

@@ -1,4 +1,4 @@
-"""Convex pairs in MuJoCo: `mj_geomDistance` of two mesh geoms."""
+"""Queries convex pairs in MuJoCo, by `mj_geomDistance` of mesh geoms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Convex pairs in Bullet, through pybullet: `getClosestPoints` of two hulls."""
+"""Queries convex pairs in Bullet, by `getClosestPoints` of pybullet."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.pieces import quiet_streams
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
-# Far enough for every pose of the motion; Bullet gives no points beyond.
+# Beyond every distance of the motion; Bullet returns no points farther away.
 _REACH_M = 1.0
 _DISTANCE, _NORMAL_ON_B = 8, 7
 
 
-# What its C code prints on import stays off the terminal.
+# Its C code prints on import.
 with quiet_streams(1, 2):
     import pybullet
 
 
 class BulletQuery:
-    """One pair, less what the same call costs for two spheres.
+    """One pair, minus the time of the same call for two spheres.
 
     Bullet returns up to four points; the deepest is its answer.
     """
 
     def __init__(self, pair: PairShape):
         self._client = pybullet.connect(pybullet.DIRECT)
-        weakref.finalize(self, pybullet.disconnect, self._client)  # clients are few
+        weakref.finalize(self, pybullet.disconnect, self._client)  # clients are limited
         self._A, self._B = (
             self._add(pybullet.GEOM_MESH, vertices=vertices.tolist())
             for vertices in (pair.A_vertices, pair.B_vertices)

@@ -1,4 +1,4 @@
-"""Convex pairs in Drake's SceneGraph, through pydrake."""
+"""Queries convex pairs in Drake's SceneGraph, through pydrake."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from drake_haptics.evaluation.measuring.timing import CallTimer
 
 
 class SceneGraphQuery:
-    """One pair: `ComputeSignedDistancePairClosestPoints`, less its cost for spheres.
+    """One pair in `ComputeSignedDistancePairClosestPoints`, minus its time for spheres.
 
-    The update of the poses is left out.
+    The update of the poses is not timed.
     """
 
     def __init__(self, pair: PairShape):
@@ -57,7 +57,7 @@ class SceneGraphQuery:
         return answer.distance, answer.nhat_BA_W, time_s
 
     def _query_at(self, X_WA: np.ndarray) -> QueryObject:
-        """Returns the query object with A posed, and its poses up to date."""
+        """Returns the query object with updated poses."""
         poses = FramePoseVector()
         poses.set_value(self._frame, RigidTransform(X_WA))
         port = self._scene_graph.get_source_pose_port(self._source)

@@ -1,1 +1,1 @@
-"""Whole ticks of a haptic loop, this package's and those of other simulators."""
+"""Times whole ticks of haptic loops in this package and other simulators."""

@@ -1,4 +1,4 @@
-"""Holds the times and the motions of loops, and makes their tables."""
+"""Represents the times and motions of loops, and makes their tables."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STOCK = {
 }
 MUJOCO = "MuJoCo, mj_step"
 EMPTY = "Drake, one empty Python system"
-# The work of each loop in a tick.
+# Description of the work of each loop in a tick.
 _COMPUTES = (
     "drake_haptics: every pair within the tolerance with its exact depth, stiffness "
     "shared among contacts, an implicit step of tool, contact and coupling; its native "
@@ -38,13 +38,11 @@ _COMPUTES = (
 
 @dataclass(frozen=True)
 class LoopFigures:
-    """The times of one loop, and its motion.
+    """The times of one loop, such as `OURS`, and its motion.
 
     Attributes:
-        scene: Name of the scene.
-        loop: Name of the loop, such as `OURS`.
         in_contact: Times of the ticks at which all loops have a contact.
-        all_ticks: Times of all ticks but the first, which starts from nothing.
+        all_ticks: Times of all ticks but the first, which starts cold.
         median_contacts: Pairs of pieces that push, over the ticks in contact.
         max_contacts: Most pairs of pieces that push at a tick.
         deepest_m: Largest penetration of a pair of pieces, m.
@@ -112,26 +110,20 @@ def _make_times(scene: str, by_name: dict[str, LoopFigures]) -> Table:
 
 
 def _make_deeds(scene: str, by_name: dict[str, LoopFigures]) -> Table:
-    return Table(
-        title=f"What the loops did, {scene}",
-        note=(
-            f"{_COMPUTES} Contacts: pairs of pieces that push, median and most, in "
-            "contact. Deepest: largest penetration of a pair. Force: of the spring "
-            "between handle and tool, median in contact and largest. Apart: median "
-            "distance of the tool's origin from this package's."
-        ),
-        header=("loop", "contacts", "deepest", "force", "apart"),
-        rows=[
-            (
-                name,
-                f"{f.median_contacts:.0f}–{f.max_contacts}",
-                f"{1e3 * f.deepest_m:.2f} mm",
-                f"{f.force_N:.2f} / {f.max_force_N:.2f} N",
-                f"{1e3 * f.apart_m:.2f} mm",
-            )
-            for name, f in by_name.items()
-            if not math.isnan(f.apart_m)
-        ],
+    return Table.of(
+        f"What the loops did, {scene}",
+        f"{_COMPUTES} Contacts: pairs of pieces that push, median and most, in "
+        "contact. Deepest: largest penetration of a pair. Force: of the spring "
+        "between handle and tool, median in contact and largest. Apart: median "
+        "distance of the tool's origin from this package's.",
+        {
+            "loop": lambda f: f.loop,
+            "contacts": lambda f: f"{f.median_contacts:.0f}–{f.max_contacts}",
+            "deepest": lambda f: f"{1e3 * f.deepest_m:.2f} mm",
+            "force": lambda f: f"{f.force_N:.2f} / {f.max_force_N:.2f} N",
+            "apart": lambda f: f"{1e3 * f.apart_m:.2f} mm",
+        },
+        [f for f in by_name.values() if not math.isnan(f.apart_m)],
     )
 
 

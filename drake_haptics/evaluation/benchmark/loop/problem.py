@@ -1,4 +1,4 @@
-"""Defines the problem and the course of a loop that draws a tool along a motion."""
+"""Defines the problem and the course of a loop that pulls a tool along a motion."""
 
 from __future__ import annotations
 
@@ -24,14 +24,12 @@ from drake_haptics.scene.schema import Scene
 
 @dataclass(frozen=True, eq=False)
 class LoopProblem:
-    """The problem that every loop is given.
+    """The problem for all loops.
 
     Attributes:
-        name: Name of the scene.
         scene: Scene with the gains and the objects' poses; without effects.
         motion: Motion of the handle, tick by tick; that of the tool is not used.
-        tool: Tool in convex pieces.
-        objects: Objects in convex pieces, at rest.
+        objects: Objects at rest.
     """
 
     name: str
@@ -52,7 +50,7 @@ class LoopProblem:
 
     @property
     def X_WG(self) -> np.ndarray:
-        """(n, 7) poses to which the handle draws the tool, [qw qx qy qz x y z], m."""
+        """(n, 7) poses to which the handle pulls the tool, [qw qx qy qz x y z], m."""
         return np.array(
             [pose_to_vector(vector_to_pose(X) @ self.X_HT) for X in self.motion.X_WH]
         )
@@ -72,7 +70,7 @@ class LoopProblem:
         """The coupling's rotational damping, at most I / h, N·m·s/rad.
 
         I is the tool's least moment of inertia and h the tick. With this damping, a
-        force that is taken at the beginning of the step is stable.
+        force that is computed at the beginning of the step is stable.
         """
         least = float(np.linalg.eigvalsh(self.mass_properties()[1]).min())
         own = self.scene.coupling.rotational_damping_Nms_per_rad
@@ -83,14 +81,7 @@ class LoopProblem:
         return calc_mass_properties(self.tool.mesh, self.scene.tool.mass_kg)
 
     def spring_force(self, p_WTo: np.ndarray) -> np.ndarray:
-        """Returns the force of the coupling's spring at each tick.
-
-        Args:
-            p_WTo: (n, 3) positions of the tool's origin, m.
-
-        Returns:
-            (n,) forces, N.
-        """
+        """Returns the force (n,) of the coupling's spring at positions (n, 3), N."""
         stretch_m = np.linalg.norm(self.X_WG[:, 4:] - p_WTo, axis=1)
         return self.scene.coupling.stiffness_N_per_m * stretch_m
 
@@ -120,7 +111,7 @@ class Loop(Protocol):
         ...
 
     def time(self) -> np.ndarray:
-        """Runs the motion from its start; returns the time (n,) of each tick, s."""
+        """Runs the motion from its start and returns the time (n,) of each tick, s."""
         ...
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -39,7 +38,7 @@ from drake_haptics.evaluation.benchmark.outside_library import OutsideLibrary
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
 
-# This package's loops: each is run as fast as it can, and paced.
+# This package's loops, each run as fast as possible and paced.
 _OWN: dict[str, Callable[..., Loop]] = {
     BACKEND: BackendLoop,
     PLANT: PlantLoop,
@@ -51,7 +50,7 @@ _OWN: dict[str, Callable[..., Loop]] = {
 def make_loops(
     problem: LoopProblem, outside: Sequence[type[OutsideLibrary]] = ()
 ) -> tuple[dict[str, Loop], dict[str, str]]:
-    """Returns name -> loop, this package's first; and library -> why it is missing."""
+    """Returns name -> loop, this package's first, and library -> why it is missing."""
     loops: dict[str, Loop] = {
         f"{name}{PACED}": make(problem, paced=True) for name, make in _OWN.items()
     }
@@ -85,15 +84,10 @@ def run_loops(
 ) -> list[LoopFigures]:
     """Returns the figures of each loop.
 
-    Each runs the whole motion, then the next one does, in an order that rotates. A
-    tick's time is the mean of the middle half of its repeats, so that interruptions
-    fall out.
-
-    Args:
-        problem: Problem that the loops were made of.
-        loops: Name -> loop, this package's whole tick among them.
-        repeats: Number of runs of each loop; at least 3.
-        progress: Callback that takes the share done, in [0, 1].
+    Loops run the whole motion in turns, in rotating order. The time of a tick is the
+    mean of the middle half of three or more repeats, so that interruptions drop out.
+    This package's whole tick must be among the loops. Progress is the share done, from
+    0 to 1.
     """
     names = list(loops)
     courses = {name: loops[name].observe() for name in names}
@@ -102,7 +96,7 @@ def run_loops(
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
     for done, name in enumerate(take_turns(names, repeats)):
         progress(done / (repeats * len(names)))
-        # The first tick starts from nothing.
+        # The first tick starts cold.
         seconds[name].append(loops[name].time()[1:])
     touching = np.all(
         [c.num_contacts[1:] > 0 for c in courses.values() if c is not None], axis=0
@@ -128,27 +122,15 @@ def _make_figures(
     course: LoopCourse | None,
     ours: LoopCourse,
 ) -> LoopFigures:
-    times: dict[str, Any] = {
-        "scene": problem.name,
-        "loop": name,
-        "in_contact": TickTimes.of(seconds[touching]),
-        "all_ticks": TickTimes.of(seconds),
-    }
+    times = TickTimes.of(seconds[touching]), TickTimes.of(seconds)
     if course is None:
-        none = math.nan
-        return LoopFigures(
-            **times,
-            median_contacts=0.0,
-            max_contacts=0,
-            deepest_m=none,
-            force_N=none,
-            max_force_N=none,
-            apart_m=none,
-        )
+        return LoopFigures(problem.name, name, *times, 0.0, 0, *[math.nan] * 4)
     count, force_N = course.num_contacts[1:], course.force_N[1:]
     apart_m = np.linalg.norm(course.X_WT[1:, 4:] - ours.X_WT[1:, 4:], axis=1)
     return LoopFigures(
-        **times,
+        problem.name,
+        name,
+        *times,
         median_contacts=float(np.median(count[touching])) if touching.any() else 0.0,
         max_contacts=int(count.max()),
         deepest_m=float(-course.nearest_m.min(initial=0.0)),

@@ -35,10 +35,10 @@ def time_ticks(
         simulator: Simulator at time 0, not initialized.
         ticks: Number of ticks.
         period_s: Period of the ticks, s.
-        paced: Whether each tick waits for the clock, as for a device; else it follows
-            the one before at once.
-        between: Callback after each tick that takes the number of the next one. Neither
-            its time nor the waiting belongs to a tick.
+        paced: Whether each tick waits for the clock, as for a device; otherwise ticks
+            follow at once.
+        between: Function that is called after each tick with the number of the next
+            one. Neither its time nor that of waiting is part of a tick.
     """
     begins: list[float] = []
     ends: list[float] = []
@@ -58,15 +58,15 @@ def time_ticks(
         simulator.set_monitor(note)
         begins.append(clock())
         simulator.AdvanceTo((ticks - 0.5) * period_s)
-    # The last tick ends where the run does, not where a tick does.
+    # The last tick ends with the run.
     return (np.array(ends) - begins[: len(ends)])[:ticks]
 
 
 class SimulatedLoop(ABC):
-    """A loop whose ticks Drake's Simulator makes."""
+    """A loop in Drake's Simulator."""
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Keeps the problem of the loop."""
+        """Stores the problem of the loop."""
         self._problem = problem
         self._paced = paced
 
@@ -85,7 +85,7 @@ class SimulatedLoop(ABC):
 def observe_ticks(
     problem: LoopProblem, simulator: Simulator, pose: OutputPort, contacts: OutputPort
 ) -> LoopCourse:
-    """Returns the course of a loop, in a run that is not timed.
+    """Returns the course of a loop in a run that is not timed.
 
     Args:
         problem: Problem of the loop.
@@ -115,7 +115,7 @@ def observe_ticks(
 
 
 class EmptyLoop(SimulatedLoop):
-    """A loop without a tool: Drake's Simulator and one call of Python in each tick."""
+    """A loop without a tool: Drake's Simulator with one call of Python per tick."""
 
     def observe(self) -> None:
         """Has no tool; see `Loop.observe`."""
@@ -126,7 +126,7 @@ class EmptyLoop(SimulatedLoop):
 
 
 class _EmptySystem(LeafSystem):
-    """A discrete state that an update leaves as it is."""
+    """A discrete state that its update does not change."""
 
     def __init__(self, period_s: float):
         super().__init__()

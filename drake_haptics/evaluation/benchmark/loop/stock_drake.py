@@ -1,4 +1,4 @@
-"""Runs the loop that Drake itself offers: a bushing, and point contact on pieces."""
+"""Runs a loop of Drake's own parts: a bushing, and point contact on pieces."""
 
 from __future__ import annotations
 
@@ -27,29 +27,24 @@ from drake_haptics.evaluation.measuring.pieces import (
     register_pieces,
 )
 
-# So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
+# Heavy enough that the bushing hardly moves the handle in a tick: 1 µm/s at 1 kN.
 _HANDLE_KG = 1e6
 _HANDLE_RADIUS_M = 1.0
 
 
 def has_solver(solver: str) -> bool:
-    """Returns whether this Drake has a contact solver.
-
-    Args:
-        solver: Drake's name of a contact approximation: "tamsi", which newer releases
-            lack, or one of SAP.
-    """
+    """Returns whether this Drake has a contact solver; newer ones lack "tamsi"."""
     return hasattr(DiscreteContactApproximation, f"k{solver.capitalize()}")
 
 
 class StockLoop:
     """A discrete `MultibodyPlant`: a bushing, and point contact.
 
-    The handle is a heavy free body whose position and velocity are set between two
-    ticks, which is not timed: a `TrajectorySource` on joints with PD control would
-    need SAP, the slower solver, and six joints more. The bushing has the scene's
-    gains, but for the rotational damping: Drake takes a bushing's forces at the
-    beginning of the step, which diverges from 2 I / h on.
+    The handle is a heavy free body whose position and velocity are set between ticks,
+    which is not timed: a `TrajectorySource` on joints with PD control would need SAP,
+    the slower solver, and six more joints. The bushing has the scene's gains except for
+    the rotational damping: Drake computes a bushing's forces at the beginning of the
+    step, which diverges from 2 I / h on.
     """
 
     def __init__(self, problem: LoopProblem, solver: str, *, paced: bool = False):
@@ -62,7 +57,7 @@ class StockLoop:
             contact_model="point",
             discrete_contact_approximation=solver,
         )
-        # Drake warns that TAMSI will be removed, Qhull that pieces are flat.
+        # Drake warns that TAMSI will be removed, and Qhull that pieces are flat.
         with quiet_streams(2):
             self._plant, _ = AddMultibodyPlant(config, builder)
             self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])

@@ -1,4 +1,4 @@
-"""Runs the loop of this package: through Drake's Simulator, and in the core alone."""
+"""Runs the loop of this package, in Drake's Simulator and in the core alone."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# A row of the recording begins early by this share of a tick, so that round-off of the
-# time never selects the row before.
+# Share of a tick by which rows of the recording begin early, so that round-off never
+# selects the previous row.
 _EARLY = 1e-3
 
 
 class ThisLoop(SimulatedLoop):
     """The systems of `AddHapticLoop`, from a device's reading to its wrench.
 
-    Behind the device port is a recording in Drake's own `TrajectorySource`.
+    Behind the device port is a recording in Drake's `TrajectorySource`.
     """
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Builds the loop, see `SimulatedLoop`."""
+        """Builds the loop; see `SimulatedLoop`."""
         super().__init__(problem, paced=paced)
         self._haptic = build_without_scene_warnings(problem.scene, self._make_device())
 
@@ -61,7 +61,7 @@ class ThisLoop(SimulatedLoop):
 
 
 class BackendLoop(ThisLoop):
-    """The whole loop with a `DeviceBackend` in Python, as a user writes it."""
+    """The whole loop with a `DeviceBackend` in Python, as users write."""
 
     def _make_device(self) -> DeviceBackend:
         self._backend = _RecordedBackend(self._problem)
@@ -74,14 +74,14 @@ class BackendLoop(ThisLoop):
 
 
 class SceneLoop(ThisLoop):
-    """The scene as `drake-haptics run` has it: a simulated arm in a simulated hand."""
+    """The scene as in `drake-haptics run`: a simulated arm in a simulated hand."""
 
     def _make_device(self) -> None:
         """Leaves the device to the scene."""
 
 
 class _RecordedBackend(DeviceBackend):
-    """A device whose handle moves as recorded, from reading to reading."""
+    """A device whose handle moves as recorded, one row per reading."""
 
     def __init__(self, problem: LoopProblem):
         motion = problem.motion
@@ -98,11 +98,11 @@ class _RecordedBackend(DeviceBackend):
 
     @property
     def is_placed(self) -> bool:
-        """Tells whether its base is where the scene has it, which is always so."""
+        """Always True."""
         return True
 
     def rewind(self) -> None:
-        """Goes back to the first reading."""
+        """Returns to the first reading."""
         self._next = iter(self._readings)
 
     def read(self) -> DeviceReading | None:
@@ -113,7 +113,7 @@ class _RecordedBackend(DeviceBackend):
         """Ignores the command."""
 
     def close(self) -> None:
-        """Has nothing to close."""
+        """Does nothing."""
 
 
 class NativeLoop:
@@ -174,7 +174,7 @@ def _make_recording(problem: LoopProblem) -> Diagram:
     motion = problem.motion
     rows = np.hstack([motion.X_WH, motion.V_WH])
     begin_s = motion.times_s - _EARLY * motion.period_s
-    # The last row holds until the end.
+    # The last row is held until the end.
     breaks = np.append(begin_s, motion.times_s[-1] + motion.period_s)
     trajectory = PiecewisePolynomial.ZeroOrderHold(
         breaks, np.vstack([rows, rows[-1]]).T

@@ -1,4 +1,4 @@
-"""Runs the loop in MuJoCo: a free tool, welded to a mocap body that is the handle."""
+"""Runs the loop in MuJoCo: a free tool, welded to a mocap body as the handle."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from drake_haptics.evaluation.measuring.pieces import (
 )
 from drake_haptics.evaluation.measuring.timing import clock_interval
 
-# MuJoCo's d, how near to rigid a constraint is: f = d m (k r + b v) where it is alone
-# and 1 / (1 - d) of that where it holds another one. Small: a spring and damper.
+# MuJoCo's impedance d: f = d m (k r + b v) for a single constraint, and 1 / (1 - d) of
+# that against another one. A small d makes a spring and damper.
 _IMPEDANCE = 0.05
 _SOLIMP = f"{_IMPEDANCE} {_IMPEDANCE} 0.001"
 
@@ -38,11 +38,10 @@ _SOLIMP = f"{_IMPEDANCE} {_IMPEDANCE} 0.001"
 class MujocoLoop:
     """`mj_step` at each tick, timed in C around the call.
 
-    The weld and the contacts have the scene's stiffness and damping where the whole
-    mass of the tool moves: MuJoCo's are per mass. Its torques are as stiff as the
-    scene's about an axis of mean inertia. Pieces are meshes in single precision; flat
-    ones are 20 µm thick. A pair of them has one contact, as elsewhere, which is
-    also faster than several.
+    MuJoCo's gains are per mass: weld and contacts have the scene's stiffness and
+    damping for the whole mass of the tool, and its torques for an axis of mean inertia.
+    Pieces are meshes in single precision; flat ones are 20 µm thick. A pair has one
+    contact, as elsewhere, which is also faster than several.
     """
 
     def __init__(self, problem: LoopProblem):
@@ -76,7 +75,7 @@ def make_mjcf(problem: LoopProblem) -> str:
     start = problem.X_WG[0]
     placed = f'pos="{listed(start[4:])}" quat="{listed(start[:4])}"'
     coupling, contact = scene.coupling, scene.contact
-    # Angles count times the torquescale, halved as in a quaternion.
+    # Angles are halved, as in a quaternion, and multiplied by the torquescale.
     mean = float(np.mean(1.0 / np.linalg.eigvalsh(I_T)))
     softness = mean * mass_kg / coupling.stiffness_N_per_m
     torquescale = 2.0 * np.sqrt(coupling.rotational_stiffness_Nm_per_rad * softness)
@@ -119,7 +118,7 @@ def make_mjcf(problem: LoopProblem) -> str:
 
 
 def _solref(stiffness: float, damping: float, mass_kg: float) -> str:
-    """Returns MuJoCo's words for a spring and damper, per mass."""
+    """Returns MuJoCo's attribute for a spring and damper, per mass."""
     scale = (1.0 - _IMPEDANCE) / mass_kg
     return f"{-stiffness * scale:.17g} {-damping * scale:.17g}"
 

@@ -1,4 +1,4 @@
-"""Runs the loop on contacts that a library from outside finds."""
+"""Runs the loop with contacts of an outside library."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 class OutsideLoop:
     """Law, coupling and step of this package, in Python; contacts of another library.
 
-    The law is that of `NativeLoop`. A contact from outside is a point, though: that of
-    two overlapping faces is the library's witness point.
+    The law is that of `NativeLoop`, but a contact of two overlapping faces is at the
+    library's witness point.
     """
 
     def __init__(self, problem: LoopProblem, library: type[OutsideLibrary]):

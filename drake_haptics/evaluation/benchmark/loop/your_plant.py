@@ -31,13 +31,13 @@ from drake_haptics.scene.validation import SceneWarning
 class PlantLoop(SimulatedLoop):
     """The tool is a free body of a discrete `MultibodyPlant`; the objects are welded.
 
-    The handle is that of a `HapticDevice` which moves as recorded. A discrete plant
-    takes applied forces at the beginning of its step, so that the rotational damping
-    of the coupling is bounded as in `StockLoop`.
+    The handle is that of a `HapticDevice` that moves as recorded. A discrete plant
+    computes applied forces at the beginning of its step, so that the rotational damping
+    of the coupling is limited as in `StockLoop`.
     """
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Builds the diagram, see `SimulatedLoop`."""
+        """Builds the diagram; see `SimulatedLoop`."""
         super().__init__(problem, paced=paced)
         builder = DiagramBuilder()
         with quiet_streams(2):
@@ -50,7 +50,8 @@ class PlantLoop(SimulatedLoop):
             _add_objects(self._plant, problem)
             self._plant.Finalize()
         with warnings.catch_warnings():
-            # It warns that an explicit step may not hold the coupling's rotation.
+            # It warns that the explicit step may be unstable for the coupling's
+            # rotation.
             warnings.simplefilter("ignore", SceneWarning)
             self._rendering = AddHapticRendering(
                 builder,

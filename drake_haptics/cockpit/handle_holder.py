@@ -1,6 +1,6 @@
-"""Says who holds the handle of a run, and hands it over.
+"""Manages who holds the handle of a run, and hands it over.
 
-A device shows its force only once that is gentle, and changes over gently.
+A device shows force only once it is gentle, and changes gradually to another force.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.schema import Scene
 from drake_haptics.web.handle import PageHandle
 
-# Share of the largest force and torque that may set in without surprising a hand. The
-# weight of a tool is less, the force that presses one out of a wall is more.
+# Share of the largest force and torque that does not surprise a hand: more than the
+# weight of a tool, less than the force that presses one out of a wall.
 _GENTLE = 0.25
-# Time for which it must have been gentle, s: a tool that begins in a wall needs a
-# moment until it pushes.
+# Time for which force must have been gentle, s, since a tool that begins in a wall does
+# not push at once.
 _GENTLE_S = 0.1
-# Time in which the share that is shown rises from none to all, s.
+# Time in which the share that is shown rises from 0 to 1, s.
 _RISE_S = 0.2
 
 
 def take_device(device: DeviceBackend, scene: Scene) -> SoftStartDevice:
-    """Returns a device that sets in gently, within the limits of a scene.
+    """Returns a device that starts gently, within the limits of a scene.
 
     Raises:
-        SceneError: The device has no place, see `find_device_site`.
+        SceneError: The device cannot be placed; see `find_device_site`.
     """
     site = find_device_site(scene)
     return SoftStartDevice(
@@ -54,18 +54,18 @@ def take_device(device: DeviceBackend, scene: Scene) -> SoftStartDevice:
 
 
 class SoftStartDevice(DeviceBackend):
-    """Shows no force of a device until that has been gentle for a moment.
+    """Shows no force of a device until the force has been gentle for a moment.
 
-    Whoever takes a handle, or takes it up again after a fault, does not know what the
-    virtual tool meets: it may be behind a wall, or turned. Until the two have found
-    each other the tool is led to the handle, and the hand feels nothing.
+    A person who takes a handle, or recovers it from a fault, does not know where the
+    virtual tool is: it may be behind a wall, or turned. Until the tool has followed to
+    the handle, the hand feels nothing.
 
-    Where the source of the force changes while it is shown, as an effect comes or goes,
-    the force changes over gradually from the one shown last.
+    If the source of the force changes while it is shown, for instance with an effect,
+    the force changes gradually from the last one shown.
 
     Attributes:
         device: The device that is taken.
-        waits: Whether its force has not set in yet.
+        waits: Whether its force is not yet shown.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class SoftStartDevice(DeviceBackend):
         self._gentle_ticks = 0
         # Share of the requested wrench that is shown, and its rise in a tick.
         self._share, self._rise = 0.0, period_s / _RISE_S
-        # The wrench that has the rest of the share, and the wrench that was shown last.
+        # The wrench with the rest of the share, and the last wrench that was shown.
         self._before_B = self._shown_B = np.zeros(6)
         self._contact: ContactServo | None = None
 
@@ -99,12 +99,12 @@ class SoftStartDevice(DeviceBackend):
 
     @property
     def is_placed(self) -> bool:
-        """Tells whether the device relies on a pose of its base in the world."""
+        """Whether the device relies on a pose of its base in the world."""
         return self.device.is_placed
 
     @property
     def shows_force(self) -> bool:
-        """Tells whether the device can show force."""
+        """Whether the device can show force."""
         return self.device.shows_force
 
     @property
@@ -113,14 +113,14 @@ class SoftStartDevice(DeviceBackend):
         return self.device.uses_slopes
 
     def read(self) -> DeviceReading | None:
-        """Returns the newest reading; idle as long as it waits."""
+        """Returns the newest reading, whose gate is idle while the device waits."""
         reading = self.device.read()
         if self.waits and reading is not None and reading.gate == GateState.ACTIVE:
             return replace(reading, gate=GateState.IDLE)
         return reading
 
     def write(self, command: DeviceCommand) -> None:
-        """Asks the device for the part of a wrench that is shown from now on."""
+        """Commands the share of a wrench that is shown."""
         if self._share < 1.0:
             command = self._ease(command)
         self._shown_B = command.F_Ho_B
@@ -129,7 +129,7 @@ class SoftStartDevice(DeviceBackend):
             self._contact.set_share(self._share)
 
     def start_contact_servo(self, tool: ServoTool) -> ContactServo:
-        """Starts the device's servo, of whose wrench the same share is shown."""
+        """Starts the device's servo, whose wrench is shown with the same share."""
         self._contact = self.device.start_contact_servo(tool)
         self._contact.set_share(self._share)
         return self._contact
@@ -140,11 +140,11 @@ class SoftStartDevice(DeviceBackend):
         self.device.end_contact_servo()
 
     def hand_over(self) -> None:
-        """Changes over gradually from the wrench that is shown to the next ones."""
+        """Changes gradually from the wrench that is shown to the next ones."""
         self._before_B, self._share = self._shown_B, 0.0
 
     def resume(self) -> None:
-        """Enables a device at fault again; otherwise lets the force set in as it is."""
+        """Recovers a device from a fault; otherwise shows the force now."""
         reading = self.read()
         if reading is not None and reading.gate == GateState.FAULT:
             self.recover()
@@ -152,7 +152,7 @@ class SoftStartDevice(DeviceBackend):
             self.waits = False
 
     def recover(self) -> None:
-        """Enables a device at fault again."""
+        """Recovers a device from a fault."""
         self.waits = True
         self._gentle_ticks, self._share = 0, 0.0
         self._before_B = np.zeros(6)
@@ -184,14 +184,14 @@ class SoftStartDevice(DeviceBackend):
         return DeviceCommand(F_Ho_B, command.X_BH, command.V_BH, K_B, B_B)
 
     def _is_gentle(self, F_Ho_B: np.ndarray) -> bool:
-        """Tells whether a wrench [τ; f] may set in; one that is not finite may not."""
+        """Returns whether a wrench [τ; f] is finite and gentle."""
         tau_x, tau_y, tau_z, f_x, f_y, f_z = np.asarray(F_Ho_B).tolist()
         torque_Nm, force_N = math.hypot(tau_x, tau_y, tau_z), math.hypot(f_x, f_y, f_z)
         return force_N <= self._gentle_force_N and torque_Nm <= self._gentle_torque_Nm
 
 
 class ForceOnRequest:
-    """Lets the force of a taken device set in where somebody asks for it."""
+    """Shows the force of a waiting device on request."""
 
     def __init__(self, device: SoftStartDevice, wants_it_now: Callable[[], bool]):
         """Starts before the first tick."""
@@ -200,13 +200,13 @@ class ForceOnRequest:
         self._could_show = False
 
     def end_tick(self, _context: object = None) -> None:
-        """Looks at the device; made to be called after every tick."""
+        """Checks for a request; to be called after every tick."""
         reading = self._device.device.read()
         gate = None if reading is None else reading.gate
         if not self._device.waits or gate == GateState.FAULT:
             self._could_show = False
             return
-        # An earlier request was for something else: to leave a fault.
+        # An earlier request was for recovery from a fault.
         if self._wants_it_now() and self._could_show:
             self._device.resume()
         self._could_show = gate == GateState.ACTIVE
@@ -214,26 +214,27 @@ class ForceOnRequest:
 
 HAND, MOUSE, SLIDERS, DEVICE = "hand", "mouse", "sliders", "device"
 _LABELS = {HAND: "Simulated hand", MOUSE: "Mouse", SLIDERS: "Sliders, gamepad"}
-# Addresses of what this page can do by itself.
+# Addresses of the devices of this page.
 _OF_PAGE = {"mouse:": MOUSE, "meshcat:": SLIDERS}
 
 
-class Holding:
+class HandleHolder:
     """The holder of the handle: the simulated hand, the mouse or a device.
 
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
-        backend: The device that is held; None for the scene's own simulated hand.
-        site: Place of the scene's device.
+        names: The possible holders, with their labels.
+        backend: The device in use; None for the scene's simulated hand.
+        site: Placement of the scene's device.
     """
 
     def __init__(
         self, scene: Scene, meshcat: Meshcat, address: str | None, *, has_hand: bool
     ):
-        """Takes the device that an address names, or the scene's simulated one.
+        """Takes the device at an address, or the scene's simulated one.
 
         Args:
-            scene: Scene that says where its device stands.
+            scene: Scene that gives the placement of its device.
             meshcat: The Meshcat that the page shows.
             address: Address for `open_device`; None for the simulated one.
             has_hand: Whether the scene's device can be simulated.
@@ -245,62 +246,57 @@ class Holding:
         self._meshcat = meshcat
         self._address = address
         self.site = find_device_site(scene)
-        self._names = dict(_LABELS)
+        self.names = dict(_LABELS)
         if not has_hand:
-            del self._names[HAND]
+            del self.names[HAND]
         if address is not None and address not in _OF_PAGE:
-            self._names[DEVICE] = address
+            self.names[DEVICE] = address
         self.name = HAND
         self.backend: DeviceBackend | None = None
         if address is not None:
             self.take(_OF_PAGE.get(address, DEVICE))
 
     @property
-    def names(self) -> dict[str, str]:
-        """The possible holders, with their labels."""
-        return self._names
-
-    @property
     def pointer(self) -> PageHandle | None:
-        """The object that the pointer on the page moves, if it holds the handle."""
+        """The device that the pointer on the page moves, if it holds the handle."""
         return self.backend if isinstance(self.backend, PageHandle) else None
 
     @property
     def taken(self) -> SoftStartDevice | None:
-        """The device in a hand, if one holds the handle."""
+        """The device with force, if it holds the handle."""
         return self.backend if isinstance(self.backend, SoftStartDevice) else None
 
     @property
     def is_felt(self) -> bool:
-        """Tells whether a device is held that shows force."""
+        """Whether a device that shows force holds the handle."""
         if self.taken is None:
             return False
         reading = self.taken.read()
         return reading is not None and reading.gate == GateState.ACTIVE
 
     def take(self, name: str, X_WH: RigidTransform | None = None) -> None:
-        """Gives the handle to a holder; the one before lets go at zero force.
+        """Gives the handle to a holder; the previous one releases it at zero force.
 
         Args:
             name: One of `names`.
-            X_WH: Pose at which the mouse and the sliders take it; where the scene's
-                hand starts if not given.
+            X_WH: Pose at which the mouse and the sliders take it. Defaults to the start
+                of the scene's hand.
 
         Raises:
             DeviceError, SceneError, TickLogError, OSError: See `open_device`; the
-                holder stays the same then.
+            holder then stays the same.
         """
         if name not in self.names:
             raise DeviceError(f"There is no holder called {name!r}.")
         if name == SLIDERS and self.name == SLIDERS:
-            # There can be one set of them.
+            # There can be only one set of sliders.
             self.close()
         backend = self._open(name, X_WH)
         self.close()
         self.name, self.backend = name, backend
 
     def close(self) -> None:
-        """Lets go, at zero force; may be called again."""
+        """Releases the handle at zero force; may be called again."""
         if self.backend is not None:
             self.backend.close()
 
@@ -324,7 +320,7 @@ class Holding:
         return None
 
     def _open_device(self, address: str) -> DeviceBackend:
-        """Returns a device that has been heard of, and whose force sets in gently."""
+        """Returns a device that has sent a reading and starts gently."""
         device = open_device(address, self._scene, self._meshcat)
         try:
             wait_for_reading(device)
