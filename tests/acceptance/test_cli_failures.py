@@ -125,7 +125,7 @@ def test_a_scene_with_nothing_in_reach_is_asked_about(folder):
         ("tool: {mesh", "tool:\n\tmesh: {mesh", ["indent with spaces", "line 2"]),
         ("{name", "name", ["cannot be read as YAML"]),
         ("[{name: block, mesh: block.obj}]", "block.obj", ["environment: expected a"]),
-        ("tool.obj", "[1, 2]", ["tool.mesh: expected a text, found [1, 2]"]),
+        ("tool.obj", "[1, 2]", ["tool.mesh: expected text, found [1, 2]"]),
         ("mesh: tool.obj", "mesh: tool.obj, mas_kg: 1", ["did you mean 'mass_kg'?"]),
         ("tool.obj", "tol.obj", ["tool.mesh", "no such file", "'tool.obj'"]),
         ("hand:", "device: {preset: omega_7}\nhand:", ["did you mean 'omega_6'?"]),

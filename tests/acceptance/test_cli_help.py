@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from shapes import SHAPES
 
 from drake_haptics.cli import main
-from drake_haptics.cli.lessons import LazyGroup
+from drake_haptics.cli.command_help import LazyGroup
 from drake_haptics.scene.library import list_scenes
 
 
@@ -28,7 +28,7 @@ def find_commands(group=main, words=()):
 
 COMMANDS = find_commands()
 EXAMPLES = sorted(
-    {words for command in COMMANDS.values() for _, words in command.lesson.examples}
+    {x for command in COMMANDS.values() for x in command.help_entry.examples.values()}
 )
 # What makes a run short, or takes the place of what goes on until Ctrl-C.
 SHORTER = {

@@ -64,7 +64,8 @@ def enter_until(host, link, wanted, needs_enter=is_not_active, bound_s=120.0):
         seen += len(new)
         if found := next((state for state in new if wanted(state)), None):
             return found
-        if new and all(map(needs_enter, new)) and time.monotonic() > pressed_s + 0.5:
+        # A busy machine may not have acted on the last one yet.
+        if new and all(map(needs_enter, new)) and time.monotonic() > pressed_s + 5.0:
             host.press_enter()
             pressed_s = time.monotonic()
     raise AssertionError(f"not reached; the last state was {link.states[-1:]}")

@@ -5,7 +5,9 @@ import textwrap
 from pathlib import Path
 
 import pytest
+from held_samples import skip_search
 
+from drake_haptics.analysis import scene_stability
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 from drake_haptics.scene.validation import SceneWarning
 
@@ -22,7 +24,8 @@ def run(snippet, capsys):
     return capsys.readouterr().out.splitlines()
 
 
-def test_a_scene(capsys):
+def test_a_scene(capsys, monkeypatch):
+    monkeypatch.setattr(scene_stability, "find_stiffness_limits", skip_search)
     *limits, slowest = run(SCENE, capsys)
     found = [
         re.fullmatch(r"(\w+, [\w ]+): stable up to [\d.e+]+ (.*)", line).groups()

@@ -21,7 +21,7 @@ from drake_haptics.scene.scene_file import load_scene
 # Stiffness and damping of translation: soft, the scenes' own, bouncing, stiff, and
 # beyond what is stable against a rigid wall.
 GAINS = [(300.0, 0.0), (800.0, 2.0), (3e3, 0.5), (1.2e4, 4.0), (4e4, 2.0)]
-TIME_S = 1.736
+TIME_S = 0.344
 
 
 @pytest.fixture(scope="module")

@@ -59,8 +59,8 @@ def test_a_growing_oscillator():
         (1.5, "grows by 50 % each period: unstable; no swing"),
         (-0.5, "250 Hz, damped 22 % of critical, dies out in 0.011 s"),
         (-1.0, "250 Hz, neither grows nor dies out"),
-        (1.0, "stays where it is put, nothing drives it back"),
-        (1.0 - 1e-8, "stays where it is put, nothing drives it back"),
+        (1.0, "neutral: nothing drives it back"),
+        (1.0 - 1e-8, "neutral: nothing drives it back"),
         (0.0, "a held or remembered value, soon replaced"),
     ],
 )

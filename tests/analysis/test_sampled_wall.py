@@ -151,11 +151,11 @@ def test_a_stiff_wall_bears_no_delay_and_a_soft_one_in_a_hand_any():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"mass": 0.0}, "mass must be positive, is 0"),
-        ({"period_s": math.nan}, "period_s must be positive, is nan"),
-        ({"damping": -1.0}, "damping must be at least 0, is -1"),
-        ({"delay_s": -1e-3}, "delay_s must be at least 0, is -0.001"),
-        ({"hand_mass": math.inf}, "hand_mass must be at least 0, is inf"),
+        ({"mass": 0.0}, "mass must be positive and finite, is 0"),
+        ({"period_s": math.nan}, "period_s must be positive and finite, is nan"),
+        ({"damping": -1.0}, "damping must be at least 0 and finite, is -1"),
+        ({"delay_s": -1e-3}, "delay_s must be at least 0 and finite, is -0.001"),
+        ({"hand_mass": math.inf}, "hand_mass must be at least 0 and finite, is inf"),
     ],
 )
 def test_what_cannot_be_is_refused(change, message):

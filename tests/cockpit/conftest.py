@@ -27,4 +27,4 @@ def make(scene, meshcat, monkeypatch):
 
     yield make
     for rig in rigs:
-        rig.holding.close()
+        rig.holder.close()

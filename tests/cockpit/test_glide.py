@@ -12,7 +12,7 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from cockpit_rig import FRICTION, CockpitRig
 from fake_device import ScriptedDevice, make_reading
 
-from drake_haptics.cockpit import holding
+from drake_haptics.cockpit import handle_holder
 from drake_haptics.scene.schema import Effects, PassivityParameters
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
@@ -73,13 +73,15 @@ def scene(tmp_path_factory):
 def test_the_force_on_a_device_does_not_step(
     scene, meshcat, monkeypatch, asked, effects, force_N
 ):
-    monkeypatch.setattr(holding, "open_device", lambda *_: ScriptedDevice(press_held))
+    monkeypatch.setattr(
+        handle_holder, "open_device", lambda *_: ScriptedDevice(press_held)
+    )
     rig = CockpitRig(
         dataclasses.replace(scene, effects=effects), meshcat, monkeypatch,
         {ASKED_AT: asked}, address="udp://there", watch=find_force,
     )  # fmt: skip
     # It presses before it would have shown that it is gentle.
-    rig.holding.taken.resume()
+    rig.holder.taken.resume()
     rig.run(0.8)
     shown = np.array(rig.seen)
     np.testing.assert_allclose(shown[ASKED_AT - 1], [0, 0, calc_force()], atol=0.02)
@@ -96,7 +98,7 @@ def hold_still(k):
 def test_a_heavy_tool_is_not_dropped_into_a_hand(scene, meshcat, monkeypatch):
     """2 kg that fall pull at the coupling with twice what they weigh, in 40 ms."""
     device = ScriptedDevice(hold_still)
-    monkeypatch.setattr(holding, "open_device", lambda *_: device)
+    monkeypatch.setattr(handle_holder, "open_device", lambda *_: device)
     heavy = dataclasses.replace(scene.tool, mass_kg=2.0)
     rig = CockpitRig(
         dataclasses.replace(scene, tool=heavy), meshcat, monkeypatch,
@@ -122,7 +124,9 @@ def test_a_heavy_tool_is_not_dropped_into_a_hand(scene, meshcat, monkeypatch):
 
 
 def test_back_to_the_file_glides_too(scene, meshcat, monkeypatch):
-    monkeypatch.setattr(holding, "open_device", lambda *_: ScriptedDevice(press_held))
+    monkeypatch.setattr(
+        handle_holder, "open_device", lambda *_: ScriptedDevice(press_held)
+    )
     rig = CockpitRig(
         scene, meshcat, monkeypatch,
         {ASKED_AT: [STIFF, FRICTION], 800: [{"do": "reset"}]},

@@ -18,7 +18,7 @@ from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import cockpit_run as segments
-from drake_haptics.cockpit import holding
+from drake_haptics.cockpit import handle_holder
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
@@ -78,12 +78,12 @@ def test_the_mouse_takes_the_handle_where_it_is(make):
         {300: [MOUSE], 400: [{"do": "move", "by": [0.0, 0.05, 0.0]}]}, watch=find_tool
     )
     rig.run(0.5)
-    assert [haptic.backend for haptic in rig.haptics] == [None, rig.holding.backend]
+    assert [haptic.backend for haptic in rig.haptics] == [None, rig.holder.backend]
     assert rig.page.states[-1]["handle"] == "mouse"
     steps = np.linalg.norm(np.diff(np.array(rig.seen)[:, 4:], axis=0), axis=1)
     assert steps.max() < 0.5e-3
     assert [outlook.gate for outlook in rig.page.outlooks] == [3] * 9 + [1] * 6
-    assert rig.holding.pointer.get_link_status().received == 1
+    assert rig.holder.pointer.get_link_status().received == 1
 
 
 def test_the_simulated_hand_begins_the_scene_anew(make):
@@ -199,7 +199,7 @@ def device(monkeypatch):
         )
         return opened[-1]
 
-    monkeypatch.setattr(holding, "open_device", open_device)
+    monkeypatch.setattr(handle_holder, "open_device", open_device)
     return opened
 
 
@@ -249,10 +249,10 @@ def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, 
     def fail(address, scene, meshcat):
         raise DeviceError("the device has said nothing")
 
-    monkeypatch.setattr(holding, "open_device", fail)
+    monkeypatch.setattr(handle_holder, "open_device", fail)
     rig.run(0.3)
     assert rig.page.states[-1]["error"] == "the device has said nothing"
-    assert rig.last.backend is rig.holding.pointer is not None
+    assert rig.last.backend is rig.holder.pointer is not None
 
 
 def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, meshcat):
@@ -261,7 +261,7 @@ def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, mesh
     with running(device_command(file, "--ttl-ms", 1000), file) as driver:
         # What it shows without a host for so long would be a fault.
         monkeypatch.setattr(
-            holding,
+            handle_holder,
             "open_device",
             lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=1.0),
         )
@@ -276,10 +276,10 @@ def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, mesh
         rig = make(
             {100: [FRICTION]},
             address="udp://there",
-            watch=lambda *_: gates.append(rig.holding.backend.read().gate),
+            watch=lambda *_: gates.append(rig.holder.backend.read().gate),
         )
         rig.run(0.8, pace=RealTimePacer(rig.period_s))
-        rig.holding.close()
+        rig.holder.close()
         figures = driver.end()
     assert len(rig.haptics) == 2
     assert GateState.ACTIVE in gates[-100:]
@@ -302,7 +302,7 @@ def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
     file = tmp_path / "figures.json"
     with running(device_command(file, "--ttl-ms", 1000), file) as driver:
         monkeypatch.setattr(
-            holding,
+            handle_holder,
             "open_device",
             lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=1.0),
         )
@@ -312,19 +312,19 @@ def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
             watch=watch,
         )
         rig.run(1.15, pace=RealTimePacer(rig.period_s))
-        rig.holding.close()
+        rig.holder.close()
         driver.end()
     p_WT, asked, shown = np.split(np.array(rig.seen), [3, 6], axis=1)
     # The scene goes on, where it is.
     np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 1151), atol=1e-9)
     assert np.linalg.norm(np.diff(p_WT, axis=0), axis=1).max() < 0.5e-3
     asked_Nm, shown_Nm = (np.linalg.norm(each[550:], axis=1) for each in (asked, shown))
-    limit_Nm = rig.holding.site.max_torque_Nm
+    limit_Nm = rig.holder.site.max_torque_Nm
     # The handle is turned against the tool.
     assert asked_Nm[:10].max() > 0.5 * limit_Nm
     most = np.clip((np.arange(600) - 99) / 200, 0.0, 1.0) * limit_Nm
     assert (shown_Nm < most + 0.02 * limit_Nm).all()
-    assert rig.holding.taken is not None and not rig.holding.taken.waits
+    assert rig.holder.taken is not None and not rig.holder.taken.waits
 
 
 def test_a_tool_that_begins_in_an_object_is_told_of_and_not_felt(
@@ -336,7 +336,7 @@ def test_a_tool_that_begins_in_an_object_is_told_of_and_not_felt(
     )
     height_m = [PLATE_TOP + TOOL_HALF_HEIGHT - 0.008]
     device = ScriptedDevice(lambda k: make_reading(k, position=(0, 0, height_m[0])))
-    monkeypatch.setattr(holding, "open_device", lambda *_: device)
+    monkeypatch.setattr(handle_holder, "open_device", lambda *_: device)
 
     def watch(haptic, root):
         if len(rig.seen) == 397:

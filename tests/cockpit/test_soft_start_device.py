@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fake_device import ScriptedDevice, make_reading
 
-from drake_haptics.cockpit.holding import ForceOnRequest, SoftStartDevice
+from drake_haptics.cockpit.handle_holder import ForceOnRequest, SoftStartDevice
 from drake_haptics.device.backend import DeviceCommand, DeviceReading, Fault, GateState
 
 PERIOD_S, FORCE_N, TORQUE_NM = 2e-3, 8.0, 0.4

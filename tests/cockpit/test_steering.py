@@ -125,6 +125,14 @@ def test_an_error_is_told_until_something_else_is_asked(make):
     assert [bool(state["error"]) for state in rig.page.states] == [False, True, False]
 
 
+def test_a_switch_is_answered_by_its_number(make):
+    view = {"do": "view", "name": "pieces", "on": True, "number": 7}
+    refused = {"do": "effect", "name": "x", "on": True, "number": 8}
+    rig = make({10: [view], 150: [refused], 300: [STIFFER]})
+    rig.run(0.4)
+    assert [state["answered"] for state in rig.page.states] == [0, 7, 8, 8]
+
+
 def test_requests_of_no_concern_are_ignored(make):
     nothing = [{"refused": 1}, {"do": "home"}, {"do": "take"}, {}, {"do": "fly"}]
     rig = make({10: nothing})

@@ -8,14 +8,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import SceneGraph
+from pydrake.lcm import DrakeLcm
+from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import DiagramBuilder, System
 from typing_extensions import assert_type
 
 from drake_haptics import (
     AddAppliedSpatialForce,
     AddHapticLoop,
     AddHapticRendering,
+    AddLcmDriver,
+    AddTickLog,
     ApplyHapticRenderingConfig,
     BrakingParameters,
     BuildHapticDiagram,
@@ -34,22 +38,36 @@ from drake_haptics import (
     DeviceBackend,
     DeviceCommand,
     DeviceError,
+    DeviceImperfections,
+    DeviceParameters,
+    DevicePreset,
     DeviceReading,
     Effects,
     EnergyLedger,
+    EnvironmentObject,
     Feature,
     FeatureKind,
     FrictionParameters,
     GravityParameters,
+    HandParameters,
+    HandPathParameters,
+    HaplyDevice,
     HapticDiagram,
     HapticLoop,
     HapticRendering,
     HapticRenderingConfig,
     HapticsError,
+    HeldHandle,
+    LcmDevice,
     Material,
     Mesh,
+    MeshcatDevice,
     MeshError,
+    MouseDevice,
+    OutsideContact,
+    OutsideLibrary,
     PairTrajectory,
+    PassivityParameters,
     Pose,
     RealTimePacer,
     RunError,
@@ -59,15 +77,23 @@ from drake_haptics import (
     SceneTracker,
     ShadingParameters,
     TickRecorder,
+    Tool,
+    UdpDevice,
+    Waypoint,
     __version__,
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+    configure_camera,
     decompose,
     explain_tick,
     find_mesh,
     find_scene,
     get_include,
+    list_device_presets,
     list_meshes,
     list_scenes,
     live_keys,
+    load_device_preset,
     load_haptic_rendering_config,
     load_mesh,
     load_scene,
@@ -79,12 +105,14 @@ from drake_haptics import (
     read_tick_log,
     replay,
     run,
+    start_meshcat,
     transfer_context,
+    wait_for_reading,
     write_live_values,
 )
 from drake_haptics.geometry import RigidToolDynamics, center, make_tool_dynamics
 from drake_haptics.simulation import LiveKey
-from drake_haptics.systems import HapticDevice
+from drake_haptics.systems import HapticCommandReceiver, HapticDevice
 
 
 class Still(DeviceBackend):
@@ -210,3 +238,70 @@ def configure_a_plant(
     assert_type(config, HapticRenderingConfig)
     config.X_HT = Pose(position_m=[0.0, 0.0, 0.1])
     return ApplyHapticRenderingConfig(config, builder, plant, scene_graph)
+
+
+def make_a_scene() -> Scene:
+    """A scene that is made in code, all of whose parts have types."""
+    up = Waypoint(time_s=0.0, position_m=[0.0, 0.0, 0.1])
+    return Scene(
+        tool=Tool(mesh="pen.obj"),
+        environment=[EnvironmentObject(name="cup", mesh="cup.obj")],
+        device=DeviceParameters(twin=DeviceImperfections()),
+        hand=HandParameters(grip="firm", path=HandPathParameters(waypoints=[up])),
+        effects=Effects(passivity=PassivityParameters()),
+    )
+
+
+def use_devices(scene: Scene) -> list[DeviceBackend]:
+    """Each device by its class."""
+    assert_type(list_device_presets(), dict[str, Path])
+    preset: DevicePreset = load_device_preset(scene.device.preset)
+    force_N, torque_Nm = preset.max_force_N, preset.max_torque_Nm
+    udp = UdpDevice("127.0.0.1", 7400, max_force_N=force_N, max_torque_Nm=torque_Nm)
+    assert_type(wait_for_reading(udp), DeviceReading)
+    meshcat = start_meshcat()
+    mouse = MouseDevice(
+        meshcat,
+        X_WB=RigidTransform(),
+        X_BH=RigidTransform(),
+        workspace_radius_m=preset.workspace_radius_m,
+        max_force_N=force_N,
+        max_torque_Nm=torque_Nm,
+    )
+    sliders = MeshcatDevice(
+        meshcat, X_WB=RigidTransform(), X_BH=RigidTransform(), workspace_radius_m=0.1
+    )
+    configure_camera(meshcat, BuildHapticDiagram(scene, meshcat=meshcat, device=mouse))
+    return [udp, mouse, sliders, HaplyDevice(max_force_N=2.0), LcmDevice.open()]
+
+
+def drive_and_log(
+    builder: DiagramBuilder, arm: System, loop: HapticLoop, recorder: TickRecorder
+) -> HapticCommandReceiver:
+    """An arm as a device on LCM, and a log of a loop."""
+    AddTickLog(builder, loop, recorder, period_s=1e-3)
+    return AddLcmDriver(
+        builder, arm, DrakeLcm(), period_s=1e-3, max_force_N=8.5, max_torque_Nm=0.2
+    )
+
+
+def calc_stiffness(handle: HeldHandle) -> float:
+    """The closed-form bounds, N/m."""
+    passive_N_per_m = calc_passive_stiffness(handle.damping_Ns_per_m, 2.0, 1e-3)
+    return min(passive_N_per_m, calc_stable_stiffness(1.0, 2.0, 1e-3, delay_s=1e-3))
+
+
+class Spheres(OutsideLibrary):
+    """A library of a user's own, for the benchmark."""
+
+    name = "spheres"
+    version = "1"
+
+    def __init__(
+        self, A_vertices: NDArray[np.float64], B_vertices: NDArray[np.float64]
+    ):
+        """Takes both hulls."""
+
+    def query(self, X_WA: NDArray[np.float64]) -> OutsideContact:
+        """Returns the contact."""
+        return OutsideContact(0.1, np.zeros(3), np.zeros(3), np.zeros(3))

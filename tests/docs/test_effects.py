@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import asdict, fields, replace
+from pathlib import Path
 
+import effect_child
 import pytest
 from effect_child import CORE_CALLS, EFFECTS, SCENE
 from effect_costs import PAGE, Costs, with_figures
@@ -42,6 +46,12 @@ def test_the_page_has_every_row_as_the_code_has_it():
         assert found[:3] == [row.formula, row.source, row.default]
         assert found[-1] == row.stability
         assert "|" not in row.formula + row.source + row.default + row.stability
+
+
+@pytest.mark.parametrize("name", CORE_CALLS)
+def test_the_calls_that_are_counted_are_made(name):
+    command = [sys.executable, Path(effect_child.__file__), "core", name, "1"]
+    subprocess.run(command, check=True)
 
 
 def test_costs_are_differences_to_the_base():

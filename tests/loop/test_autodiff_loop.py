@@ -26,7 +26,7 @@ SCENES = {
     "hammer_block": 0.6,
     "rubbed_sphere": 2.4,
     "sphere_pen": 0.8,
-    "torus_peg": 1.1,
+    "torus_peg": 1.0,
 }
 
 
@@ -81,7 +81,8 @@ def test_derivatives_that_a_system_loses_would_be_seen(run, monkeypatch):
         return AutoDiffVector(answer.value, gradient)
 
     monkeypatch.setattr(PenaltyForce, "differentiate", forgetful)
-    assert calc_gradients(run.loop, run.states[0]).errors[:, column].max() > 1e-5
+    errors = [calc_gradients(run.loop, state).errors for state in run.states]
+    assert np.nanmax([error[:, column] for error in errors]) > 1e-5
 
 
 def test_a_simulation_of_the_twin_has_the_derivatives_of_a_simulation(run):

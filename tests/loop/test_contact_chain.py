@@ -62,6 +62,10 @@ def cup(monkeypatch: pytest.MonkeyPatch, change: Callable[[Scene], None] = id):
     return [build(scene, monkeypatch, chained) for chained in (True, False)]
 
 
+def add_friction(scene: Scene) -> None:
+    scene.effects.friction = FrictionParameters()
+
+
 def read_state(haptic: HapticDiagram, root: Context) -> np.ndarray:
     """The state of the tool and what the device shows."""
     return np.concatenate(
@@ -254,6 +258,28 @@ def test_other_wrenches_count_beside_the_chain(monkeypatch: pytest.MonkeyPatch) 
     assert np.abs(heavy[-1] - weightless[-1]).max() > 1e-6
 
 
+def test_friction_is_found_from_the_chain_bit_by_bit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    chained, separate = cup(monkeypatch, add_friction)
+    assert chained.loop.effects.friction.HasInputPort("contact_chain")
+    assert not separate.loop.effects.friction.HasInputPort("contact_chain")
+
+    def read_friction(haptic: HapticDiagram, root: Context) -> np.ndarray:
+        step = haptic.diagram.GetOutputPort("friction_force").Eval(root)
+        return np.concatenate(
+            [step.f_cluster_W.ravel(), step.next_state, read_state(haptic, root)]
+        )
+
+    rough = run(chained, 0.9, read_friction)
+    assert_same(rough, run(separate, 0.9, read_friction))
+    slippery = run(cup(monkeypatch)[0], 0.9)
+    assert np.abs(rough[-1][-19:] - slippery[-1]).max() > 1e-3
+    # Reading what is between changes nothing, and is the same.
+    between = run(chained, 0.9, read_between)
+    assert_same(between, run(separate, 0.9, read_between))
+
+
 def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -287,7 +313,6 @@ def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain(
     "effects",
     [
         Effects(shading=ShadingParameters()),
-        Effects(friction=FrictionParameters()),
         Effects(braking=BrakingParameters()),
     ],
 )
@@ -322,11 +347,12 @@ def test_a_device_is_told_the_same_wrench_and_slopes(
     assert min(stiffness) < 1e-6 < 1.0 < max(stiffness)
 
 
+@pytest.mark.parametrize("change", [id, add_friction])
 def test_the_twin_has_the_derivatives_of_the_separate_chain(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, change: Callable[[Scene], None]
 ) -> None:
     found = []
-    for haptic in cup(monkeypatch):
+    for haptic in cup(monkeypatch, change):
         simulator = make_simulator(haptic)
         simulator.AdvanceTo(0.7 + 0.5 * _TICK)
         context = simulator.get_context()
@@ -350,7 +376,7 @@ def test_a_chain_knows_what_its_tracker_knew(monkeypatch: pytest.MonkeyPatch) ->
     root = chained.diagram.CreateDefaultContext()
     query = chained.loop.contact_query
     own = query.GetMyMutableContextFromRoot(root)
-    query.learn(own, old, old_context)
+    query.take_hint(own, old, old_context)
     tool = chained.loop.haptic_tool.GetMyMutableContextFromRoot(root)
     tool.SetDiscreteState(0, read_state(separate, simulator.get_context())[:13])
     chain = query.GetOutputPort("contact_chain").Eval(own)

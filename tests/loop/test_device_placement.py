@@ -156,7 +156,7 @@ def test_an_address_is_no_device_yet(scene):
 
 def test_no_energy_is_booked_for_a_device_that_nobody_simulates(scene):
     haptic = BuildHapticDiagram(scene, device=device_at(scene, 0.01))
-    with pytest.raises(ValueError, match="energy can be booked for a simulated"):
+    with pytest.raises(ValueError, match="energy can be recorded for a simulated"):
         run(haptic, 0.01, energy=True)
 
 

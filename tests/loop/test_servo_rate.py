@@ -14,7 +14,7 @@ from struct_driver import ACTIVE, FAULT, IDLE, StructDriver
 
 from drake_haptics import BuildHapticDiagram, SceneError
 from drake_haptics.bounds.held_handle import check_scene_coupling
-from drake_haptics.cockpit.holding import take_device
+from drake_haptics.cockpit.handle_holder import take_device
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device

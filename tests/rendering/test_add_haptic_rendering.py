@@ -387,7 +387,7 @@ def test_one_name_is_no_list_of_bodies():
 
 
 def test_a_period_must_be_positive():
-    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         over_a_slab(period_s=0.0)
 
 

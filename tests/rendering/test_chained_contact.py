@@ -14,7 +14,12 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from slider_device import make_device
 
 from drake_haptics.rendering import wiring
-from drake_haptics.scene.schema import BrakingParameters, CouplingParameters, Effects
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    CouplingParameters,
+    Effects,
+    FrictionParameters,
+)
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.systems.contact.contact_clustering import ClusteringRule
 
@@ -56,6 +61,19 @@ def test_a_body_falls_and_rolls_bit_by_bit_alike(monkeypatch, config) -> None:
     one, other = (advance(*scene, 0.2) for scene in scenes)
     np.testing.assert_array_equal(one, other)
     assert one[:, -1].max() > 1.0
+
+
+def test_friction_holds_a_body_by_the_chain_as_by_the_ports(monkeypatch) -> None:
+    rough = Effects(friction=FrictionParameters())
+    scenes = make_both(monkeypatch, lambda: make_scene(effects=rough))
+    fed = sources(scenes[0][1])
+    assert fed["stick_slip_friction.contact_chain"] == "contact_query.contact_chain"
+    one, other = (advance(*scene, 0.2) for scene in scenes)
+    # The ports find the contacts of a pose twice: after a step and before the next. The
+    # second time can change the last bit.
+    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9)
+    smooth = advance(*make_both(monkeypatch, make_scene)[0], 0.2)
+    assert np.abs(one - smooth).max() > 1e-3
 
 
 def make_held():

@@ -84,6 +84,15 @@ def make_loop(folder: Path) -> list[object]:
         drake_haptics.FrictionParameters(),
         drake_haptics.BrakingParameters(),
         drake_haptics.GravityParameters(),
+        drake_haptics.PassivityParameters(),
+        drake_haptics.DeviceImperfections(),
+        scene.tool,
+        scene.environment[0],
+        scene.device,
+        scene.hand,
+        scene.hand.path,
+        scene.hand.path.waypoints[0],
+        drake_haptics.load_device_preset(scene.device.preset),
         haptic,
         haptic.loop,
         drake_haptics.run(haptic, 0.01),
@@ -105,6 +114,8 @@ def make_results() -> list[object]:
     return [
         PeriodMap(np.eye(30), 1e-3, names, np.zeros(30), (), 0.0),
         make_study(*make_usual_rows()),
+        drake_haptics.HeldHandle(0.1, 0.5, 5e-5, 1e-3),
+        drake_haptics.OutsideContact(0.0, np.zeros(3), np.zeros(3), np.zeros(3)),
     ]
 
 
@@ -113,10 +124,18 @@ def test_no_public_class_is_forgotten(spoken: dict[str, str]) -> None:
     classes = {
         name
         for name, one in objects.items()
-        if isinstance(one, type) and not issubclass(one, Exception | enum.Enum)
+        if isinstance(one, type)
+        # Every device has the line of `DeviceBackend`, which `ScriptedDevice` says.
+        and not issubclass(one, Exception | enum.Enum | drake_haptics.DeviceBackend)
     }
-    # The one is abstract, the other is spoken in test_haptic_rendering.py.
-    assert classes - spoken.keys() == {"DeviceBackend", "HapticRendering"}
+    # The one is in test_haptic_rendering.py, the other is abstract.
+    assert classes - spoken.keys() == {"HapticRendering", "OutsideLibrary"}
+
+
+def test_every_device_has_the_line_of_its_base() -> None:
+    for name in ("UdpDevice", "HaplyDevice", "LcmDevice", "MouseDevice"):
+        device = getattr(drake_haptics, name)
+        assert device.__repr__ is drake_haptics.DeviceBackend.__repr__
 
 
 def test_each_is_one_line_that_names_its_class_and_no_address(

@@ -10,7 +10,7 @@ from drake_haptics.loop.contact import find_skins
 from drake_haptics.scene.contact_law import (
     calc_first_touch,
     check_constraint_law,
-    question_overlap,
+    make_overlap_warning,
 )
 from drake_haptics.scene.schema import (
     BrakingParameters,
@@ -122,5 +122,5 @@ def test_contact_begins_at_the_skin_and_no_speed_skips_it():
 
 
 def test_only_an_overlap_is_asked_about():
-    assert question_overlap(0.0) == question_overlap(-1e-4) == ""
-    assert "2 mm deep" in question_overlap(2e-3)
+    assert make_overlap_warning(0.0) == make_overlap_warning(-1e-4) == ""
+    assert "2 mm deep" in make_overlap_warning(2e-3)

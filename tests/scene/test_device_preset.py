@@ -142,7 +142,7 @@ def test_a_coupling_is_suggested_for_an_arm_of_ones_own(tmp_path):
             f"motors:\n  joint_per_motor: {[[0.0] * 6] * 6}",
             "must be invertible",
         ),
-        ("my_arm.sdf", "no_arm.sdf", r"model is no file: .*no_arm\.sdf"),
+        ("my_arm.sdf", "no_arm.sdf", r"model does not exist: .*no_arm\.sdf"),
         ("source: measured", "source: [", "cannot be read as YAML"),
     ],
 )

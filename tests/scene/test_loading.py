@@ -127,7 +127,7 @@ def test_a_pose_is_drakes():
         ("mass_kg: 0.08", "mass_kg:", r"tool\.mass_kg: expected a finite number"),
         ("mass_kg: 0.08", "mass_kg: 0", r"tool\.mass_kg must be positive, is 0"),
         ("periodic: false", "periodic: 3", r"hand\.path\.periodic: expected true or"),
-        ("hand:", "contact: {depth: 3}\nhand:", r"contact\.depth: expected a text"),
+        ("hand:", "contact: {depth: 3}\nhand:", r"contact\.depth: expected text"),
         ("scale: 1e-3", "scale: -1", r"environment\[0\]\.scale must be positive"),
         (
             "hand:",

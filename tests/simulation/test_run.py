@@ -7,6 +7,7 @@ import time
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from fake_clock import FakeClock
 
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
@@ -139,9 +140,17 @@ def test_in_real_time_a_run_is_not_faster_than_the_clock(haptic):
     start = time.perf_counter()
     figures = run(haptic, 0.2, pace=RealTimePacer(haptic.period_s)).to_dict()
     assert time.perf_counter() - start >= 0.199
-    # Waiting is not counted: most ticks are much shorter than their millisecond
-    # even on a busy computer.
-    assert figures["tick_us"]["median"] < 990.0
+    assert figures["ticks"] == 200
+
+
+def test_waiting_is_not_part_of_a_tick(haptic, monkeypatch):
+    clock = FakeClock(reading_s=1e-6)
+    monkeypatch.setattr(time, "perf_counter", clock.read)
+    pace = RealTimePacer(haptic.period_s, clock.read, clock.sleep)
+    figures = run(haptic, 0.2, pace=pace).to_dict()
+    assert pace.ticks == 199 and pace.skipped == 0
+    # Two readings: the one that ends the tick and the one that waiting begins with.
+    assert figures["tick_us"]["max"] == pytest.approx(2.0)
 
 
 def test_a_value_that_is_not_finite_stops_the_run(haptic):

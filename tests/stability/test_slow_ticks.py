@@ -20,6 +20,8 @@ BUDGET_S = 5e-4
 # Slow while the spoon scrapes along the cup's wall.
 SLOW_S = (1.0, 1.6)
 END_S = 4.8
+# So soft that the spoon penetrates: m, N/m, N·s/m.
+SOFT = {"tolerance_m": 1e-3, "stiffness_N_per_m": 2e3, "damping_Ns_per_m": 4.0}
 
 
 class TickingClock(HandClock):
@@ -40,7 +42,7 @@ def build(scene_name, monkeypatch, *, budget_us=1e6 * BUDGET_S, **contact):
     scene = load_scene(find_scene(scene_name))
     scene.device.tick_budget_us = budget_us
     scene.effects = Effects(friction=FrictionParameters(), braking=BrakingParameters())
-    for name, value in contact.items():
+    for name, value in {**SOFT, **contact}.items():
         setattr(scene.contact, name, value)
     clock = TickingClock()
     monkeypatch.setattr(builder, "TickMeter", partial(TickMeter, clock))

@@ -106,19 +106,19 @@ def test_it_stays_in_contact_on_its_side_and_comes_back(scene, direction):
 
 @pytest.mark.parametrize(("scene", "direction"), CASES)
 def test_what_the_hand_feels_there_is_steady(scene, direction):
-    """In contacts that soft the spoon may rock by a millimeter; nobody feels it."""
+    """Between facets of the cup the spoon may shake by a micrometer, unfelt."""
     course = drive(scene, direction)
     held = slice(_OUT + _HOLD // 2, _OUT + _HOLD)
     pull = course.pull_m[held]
     force_N = 8.5 * pull / np.linalg.norm(pull, axis=1, keepdims=True)
     assert np.ptp(force_N, axis=0).max() < 0.15
     assert np.linalg.norm(course.v[held], axis=1).max() < 0.2
-    if scene != "cup_spoon":
-        assert np.linalg.norm(course.v[held][-100:], axis=1).max() < 1e-3
+    fastest = 2e-3 if scene == "cup_spoon" else 1e-3
+    assert np.linalg.norm(course.v[held][-100:], axis=1).max() < fastest
 
 
 def test_a_coupling_without_limits_is_pulled_through():
     """That is what the limits are for; it also shows that the above can fail."""
     gains = _core.CouplingGains(800.0, 2.0, 1.0, 0.004)
-    course = drive("cup_spoon", (0.0, 0.0, -1.0), gains)
+    course = drive("can_box", (0.0, 0.0, -1.0), gains)
     assert course.p[_OUT + _HOLD, 2] < -0.2

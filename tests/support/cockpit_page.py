@@ -102,19 +102,22 @@ class Page:
         return np.array([float(cell.replace("−", "-")) for cell in cells])
 
     def wait_for_rest(self):
-        """Waits until the force stands still for a while of the run; returns it."""
-        same, before, then = 0, None, ""
+        """Waits until the force rests for half a second of the run; returns it.
+
+        A change that was asked for just before has begun by then, and ended: it takes
+        a fifth of a second, however slow the run is.
+        """
+        before, since_s = None, 0.0
         deadline = time.monotonic() + 180.0
-        while same < 4:
+        while True:
             assert time.monotonic() < deadline, "the force never came to rest"
+            now_s, force = float(self.read("time").split()[0]), self.force_W()
+            # Rounding to hundredths may flicker.
+            if before is None or np.abs(force - before).max() > 0.015:
+                before, since_s = force, now_s
+            if now_s - since_s > 0.5:
+                return before
             time.sleep(0.02)
-            now = self.read("time")
-            if now == then:
-                continue
-            force = self.force_W()
-            same = same + 1 if before is not None and (force == before).all() else 0
-            before, then = force, now
-        return before
 
     def middle(self, selector):
         """The middle of an element, px."""

@@ -87,7 +87,7 @@ class CockpitRig:
             scene, meshcat, None, name="test", device=address, **options
         )
         self.changes, self.cockpit = self._run._changes, self._run._cockpit
-        self.holding = self._run._holding
+        self.holder = self._run._holder
         self.haptics, self.seen = [], []
         self._watch = watch or (lambda haptic, root: root.get_time())
 

@@ -47,6 +47,11 @@ def make_limits(eigenvalue: float, against: str = "a rigid wall") -> StiffnessLi
     )
 
 
+def skip_search(held, kind, against, progress) -> StiffnessLimits:
+    """Takes the place of `find_stiffness_limits`, which takes ten seconds for each."""
+    return replace(make_limits(2e4, against), kind=kind)
+
+
 @cache
 def analyze_sample() -> SceneStability:
     """Returns the analysis of a true loop, with limits that were not searched."""

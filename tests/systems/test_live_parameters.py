@@ -209,7 +209,7 @@ def test_a_query_that_learns_goes_on_from_what_another_knows():
     )
     for query, way_out in [(same, 1.0), (other_depth, -1.0), (other_pieces, -1.0)]:
         context = query.CreateDefaultContext()
-        query.learn(context, known, of_known)
+        query.take_hint(context, known, of_known)
         found = query_at(query, context, -0.004)
         assert found.nhat_BA_W[0, 2] == pytest.approx(way_out)
         assert query.get_tolerance(context) == query.get_tolerance(
@@ -222,12 +222,12 @@ def test_a_query_that_learns_goes_on_from_what_another_knows():
 @pytest.mark.parametrize("bad", [-1e-9, math.nan, math.inf])
 def test_bad_values_are_refused_and_the_context_is_as_it_was(query, bad):
     context = query.CreateDefaultContext()
-    with pytest.raises(ValueError, match=r"^tolerance_m must be finite and not neg"):
+    with pytest.raises(ValueError, match=r"^tolerance_m must be at least 0 and finite"):
         query.set_tolerance(context, bad)
     assert query.get_tolerance(context) == 2e-3
-    with pytest.raises(ValueError, match=r"^tolerance_m must be finite and not neg"):
+    with pytest.raises(ValueError, match=r"^tolerance_m must be at least 0 and finite"):
         ClusteringRule("shared", bad)
-    with pytest.raises(ValueError, match=r"^delta_m must be finite and positive"):
+    with pytest.raises(ValueError, match=r"^delta_m must be positive and finite"):
         ClusteringRule("octree", 1e-3, bad)
     with pytest.raises(ValueError, match=r"^stiffness_N_per_m must be finite and not"):
         ContactGains(np.array([bad]), np.array([1.0]))

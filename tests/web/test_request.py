@@ -20,6 +20,7 @@ from drake_haptics.web.messages import read_page_request
         {"do": "set", "key": "contact.tolerance_m", "to": 1e-3},
         {"do": "choose", "key": "contact.clustering", "to": "octree"},
         {"do": "effect", "name": "friction", "on": True},
+        {"do": "effect", "name": "friction", "on": True, "number": 3},
         {"do": "handle", "to": "mouse"},
         {"do": "view", "name": "pieces", "on": False},
         {"do": "camera", "to": "fit"},

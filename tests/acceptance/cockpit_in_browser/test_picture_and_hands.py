@@ -1,10 +1,12 @@
 """The cockpit's picture, keys and controls; and who holds the handle."""
 
 import json
+import time
 
 import numpy as np
 import pytest
 import websocket
+from waiting import wait_until
 
 # The table has hundredths of a newton; the hand's spring is turned by the arm's rods.
 TOLERANCE_N = 0.03
@@ -12,21 +14,45 @@ TOLERANCE_N = 0.03
 
 def test_views_change_the_picture_and_back(page):
     page.wait_for_rest()
-    first = look(page)
+    first = wait_for_still(page)
     for view in ("pieces", "virtual", "ghost"):
-        page.click(f"#view-{view}")
+        switch(page, view)
         assert wait_for_change(page, first) > 50
-        page.click(f"#view-{view}")
+        switch(page, view)
         wait_for_change(page, first, is_same=True)
     # The one contact is inside the arrow of its force.
-    page.click("#view-forces")
+    switch(page, "forces")
     wait_for_change(page, first)
-    bare = look(page)
-    page.click("#view-contacts")
+    bare = wait_for_still(page)
+    switch(page, "contacts")
     wait_for_change(page, bare)
     for view in ("contacts", "forces"):
-        page.click(f"#view-{view}")
+        switch(page, view)
     wait_for_change(page, first, is_same=True)
+
+
+def switch(page, view):
+    """Clicks on a switch, and waits until the run has answered."""
+    box = f"document.getElementById('view-{view}')"
+    was_on = page.evaluate(f"{box}.checked")
+    page.click(f"#view-{view}")
+    page.wait_for(
+        f"{box}.checked != {json.dumps(was_on)}"
+        " && !document.querySelector('.switch.waiting')"
+    )
+
+
+def test_a_state_from_before_a_switch_does_not_undo_it(page):
+    """Else a second click would switch on again what it should switch off."""
+    switch = "document.getElementById('view-pieces')"
+    state = {"state": {"views": {"pieces": False}, "answered": 0}}
+    hear = f"ways.at(-1).onmessage({{data: {json.dumps(json.dumps(state))}}})"
+    page.wait_for("!document.querySelector('.switch.waiting')")
+    assert page.evaluate(f"({switch}.click(), {hear}, {switch}.checked)")
+    page.wait_for("!document.querySelector('.switch.waiting')")
+    assert page.evaluate(f"{switch}.checked")
+    page.click("#view-pieces")
+    page.wait_for(f"!{switch}.checked && !document.querySelector('.switch.waiting')")
 
 
 def look(page):
@@ -34,17 +60,30 @@ def look(page):
     return page.browser.screenshot(320, 100, 540, 580).astype(int)
 
 
+def wait_for_still(page):
+    """Waits until the picture, which follows the figures, stands still; returns it."""
+    seen = [look(page)]
+
+    def stands_still():
+        seen.append(look(page))
+        return len(seen) > 5 and not np.ptp(seen[-5:], axis=0).max() > 12
+
+    wait_until(stands_still, lambda: time.sleep(0.4))
+    return seen[-1]
+
+
 def wait_for_change(page, before, is_same=False):
     """Waits for another picture, or the same; returns how many pixels differ."""
-    for _ in range(100):
-        differ = int((np.abs(look(page) - before).max(axis=2) > 12).sum())
-        if (differ <= 8) == is_same:
-            return differ
-    raise AssertionError(f"{differ} pixels differ")
+
+    def count_changes():
+        return int((np.abs(look(page) - before).max(axis=2) > 12).sum())
+
+    wait_until(lambda: (count_changes() <= 8) == is_same)
+    return count_changes()
 
 
 def test_the_camera_goes_where_a_key_says(page):
-    before = look(page)
+    before = wait_for_still(page)
     page.press("4", "Digit4")
     assert wait_for_change(page, before) > 1000
     page.press("1", "Digit1")

@@ -81,7 +81,6 @@ def test_costs_are_those_of_ticks(study):
         for times in (row.cost.tick, row.cost.native):
             assert 0.0 < times.p99_us <= times.p99_9_us
             assert times.median_us <= times.p99_us
-        assert row.cost.native.median_us < row.cost.tick.median_us
         assert row.cost.instructions is None
 
 

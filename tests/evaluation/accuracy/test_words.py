@@ -64,7 +64,13 @@ def test_a_faster_setting_with_the_scenes_own_error_is_not_called_more_exact():
 def test_a_scene_that_is_the_reference_is_exact():
     scene = make_row("the scene", "as it is", 150.0, 24.0, 1e-9, is_scene=True)
     _, figures = describe_verdict(make_study(scene))
-    assert "Its force is the reference's to 0.001 N." in figures
+    assert "Its force differs from the reference's by less than 0.001 N." in figures
+
+
+def test_a_scene_that_touches_nothing_has_no_verdict():
+    (words,) = describe_verdict(replace(STUDY, contact_ticks=0))
+    assert words.startswith("The tool touched nothing in the ")
+    assert "Leave the scene" not in words and "measure all of the motion" in words
 
 
 def test_a_scene_without_figures_has_no_verdict():

@@ -60,3 +60,5 @@ def test_the_page_stands_alone(hull_of_l, tmp_path, capsys):
     assert page.lstrip().lower().startswith("<!doctype html>")
     assert 'src="http' not in page and "src='http" not in page
     assert len(page) > 100_000  # the drawing code is inside
+    assert 'content="width=device-width' in page[:1000]
+    assert "convex piece" in page and "left: in place" in page

@@ -237,7 +237,7 @@ def test_poses_that_are_none_are_refused() -> None:
 def test_a_sampler_names_its_state_and_checks_its_period() -> None:
     names = PoseSampler(["b"], 4e-3).list_state_names()
     assert names[:1] == ["X_WT.qw"] and len(names) == 14
-    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         PoseSampler([], 0.0)
 
 

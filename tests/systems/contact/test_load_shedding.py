@@ -110,7 +110,7 @@ def test_one_late_tick_is_felt_by_no_one(loop):
 @pytest.mark.parametrize("value", [0.0, -1.0, np.inf, np.nan])
 def test_what_cannot_be_is_refused(name, value):
     arguments = {"period_s": PERIOD_S, "budget_s": 5e-4, "largest_cell_m": 1e-2}
-    with pytest.raises(ValueError, match=f"{name} must be finite and positive"):
+    with pytest.raises(ValueError, match=f"{name} must be positive and finite"):
         LoadShedding(TickMeter(), **{**arguments, name: value})
 
 

@@ -209,7 +209,7 @@ def test_a_block_on_a_slope_rests_or_slides(tangent):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"period_s": 0.0}, "period_s must be positive, is 0.0"),
+        ({"period_s": 0.0}, "period_s must be positive and finite, is 0.0"),
         ({"coefficient": [-0.1]}, r"coefficient\[0\].*at least 0, is -0.1"),
         ({"coefficient": [0.1, 0.1]}, "one item for each object"),
         ({"break_away_m": 0.0}, "break_away_m.*above 0, is 0"),

@@ -86,7 +86,7 @@ def test_a_free_tool_falls_without_turning():
 @pytest.mark.parametrize(
     ("bad", "named"),
     [
-        ({"mass_kg": 0.0}, "mass_kg must be finite and positive, is 0"),
+        ({"mass_kg": 0.0}, "mass_kg must be positive and finite, is 0"),
         ({"mass_kg": np.nan}, "mass_kg"),
         ({"mass_kg": np.inf}, "mass_kg"),
         ({"p_TTcm": [0, 0]}, "p_TTcm must be three finite numbers"),
