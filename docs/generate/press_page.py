@@ -15,8 +15,6 @@ PAGE = Path(__file__).parents[2] / "docs" / "verification" / "contact-laws.md"
 GENERATOR = Path(__file__).with_name("press_table.py")
 COMMAND = f"python docs/generate/{GENERATOR.name}"
 
-# What the tool of soft gains sinks through: walls thinner than it sinks in.
-THIN = ("cup", "spoon")
 MOTIONS = ("press", "jab")
 # Columns of the page: each cell has the text of a press and that of a jab. The program
 # prints more of them.
@@ -84,13 +82,14 @@ def make_rows(results: Iterable[dict[str, str]]) -> list[list[str]]:
 
 
 def describe_shares(results: Iterable[dict[str, str]]) -> str:
-    """Returns how many presses with the gains of the shipped scenes got through."""
-    soft = [row for row in results if row["gains"] == "soft"]
-    thin = [row for row in soft if row["solid"] in THIN]
+    """Returns how many presses got through with shipped gains and with soft ones."""
+    shipped, soft = (
+        _share_through([row for row in results if row["gains"] == name])
+        for name in ("shipped", "soft")
+    )
     return (
-        "**With the gains of the shipped scenes"
-        f" {_share_through(soft)} got through; on cup and spoon alone,"
-        f" {_share_through(thin)}.**\n"
+        f"**With the gains of the shipped scenes {shipped} got through; with soft"
+        f" gains {soft}.**\n"
     )
 
 

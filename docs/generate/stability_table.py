@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable
 from pathlib import Path
+from typing import get_args
 
 from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyze_scene
 from drake_haptics.analysis.stability_page import describe_delay
-from drake_haptics.analysis.stiffness_limits import format_limit
+from drake_haptics.analysis.stiffness_limits import Against, format_limit
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
@@ -27,72 +27,72 @@ DRAWN = "cup_spoon"
 _MAP_SIZE = 20
 _DPI = 80
 
+AGAINST = get_args(Against)
 Results = dict[str, SceneStability]
 
 
-def place_rows(results: Results) -> Iterable[list[str]]:
-    """Yields where each scene is held, and the figures that are not limits."""
-    yield [
-        "scene",
-        "held at, s",
-        "contacts",
-        "force, N",
-        "growth per tick",
-        "further delay",
-        "damping that passivity needs",
-    ]
-    for name, found in results.items():
-        yield [
-            name,
-            f"{found.time_s:.3f}",
-            f"{found.num_contacts}",
-            f"{found.contact_force_N:.2f}",
-            f"{found.growth:.5f}",
-            describe_delay(found),
-            f"{100.0 * found.damping_usage.max():.1f} % of what there is",
+def make_places(results: Results) -> str:
+    """Returns where each scene is held, and the figures that are not limits."""
+    rows = [
+        [
+            "scene",
+            "held at, s",
+            "contacts",
+            "force, N",
+            "growth per tick",
+            "further delay",
+            "passivity needs",
         ]
-
-
-def limit_rows(results: Results) -> Iterable[list[str]]:
-    """Yields the largest stable stiffness by each way, relative to the first."""
-    yield [
-        "scene",
-        "stiffness",
-        "against",
-        "scene's",
-        "eigenvalue",
-        "simulation",
-        "differs by",
-        "one axis",
-        "differs by",
-        "formula",
-        "differs by",
     ]
     for name, found in results.items():
-        for limit in found.limits:
-            cells = [name, f"{limit.kind}, {limit.unit}", limit.against]
-            cells.append(format_limit(limit.stiffness))
-            cells.append(format_limit(limit.eigenvalue))
-            for value in (limit.simulated, limit.one_axis, limit.formula):
-                cells.append(format_limit(value))
-                cells.append(_to_percent(value / limit.eigenvalue - 1.0))
-            yield cells
+        rows.append(
+            [
+                name,
+                f"{found.time_s:.3f}",
+                f"{found.num_contacts}",
+                f"{found.contact_force_N:.2f}",
+                f"{found.growth:.5f}",
+                describe_delay(found),
+                f"{100.0 * found.damping_usage.max():.1f} % of the damping",
+            ]
+        )
+    return to_markdown(rows)
 
 
-def _to_percent(share: float) -> str:
-    """Returns hundredths of a percent, without a sign at 0."""
-    return f"{round(100.0 * share, 2) + 0.0:.2f} %" if math.isfinite(share) else ""
+def make_limits(results: Results) -> str:
+    """Returns the largest stable stiffnesses, and how far simulations differ."""
+    rows = [["scene", "stiffness", "scene's", *AGAINST, "one axis", "formula"]]
+    differences = []
+    for name, found in results.items():
+        for kind in dict.fromkeys(limit.kind for limit in found.limits):
+            limits = {x.against: x for x in found.limits if x.kind == kind}
+            # One axis and the formula are of a wall.
+            wall = limits["a rigid wall"]
+            values = [
+                wall.stiffness,
+                *(limits[against].eigenvalue for against in AGAINST),
+            ]
+            values += [wall.one_axis, wall.formula]
+            rows.append([name, f"{kind}, {wall.unit}", *map(format_limit, values)])
+            differences += [
+                abs(x.simulated / x.eigenvalue - 1) for x in limits.values()
+            ]
+    told = max(difference for difference in differences if math.isfinite(difference))
+    return (
+        f"{to_markdown(rows)}\nThe limits of simulations differ from those of"
+        f" eigenvalues by at most {100.0 * told:.2f} %.\n"
+    )
 
 
-TABLES = {"places": place_rows, "limits": limit_rows}
+PARTS = {"places": make_places, "limits": make_limits}
 
 
-def with_tables(page: str, results: Results) -> str:
+def with_parts(page: str, results: Results) -> str:
     """Returns the page with the present tables."""
-    for name, rows in TABLES.items():
-        table = to_markdown(rows(results))
-        print(table)
-        page = replace_part(page, table, name)
+    for name, make in PARTS.items():
+        part = make(results)
+        print(part)
+        page = replace_part(page, part, name)
     return page
 
 
@@ -109,7 +109,7 @@ def main() -> None:
         name: analyze(name, _MAP_SIZE if write and name == DRAWN else 0)
         for name in SCENES
     }
-    page = with_tables(PAGE.read_text(encoding="utf-8"), results)
+    page = with_parts(PAGE.read_text(encoding="utf-8"), results)
     if write:
         write_page(PAGE, page, __file__)
         results[DRAWN].plot().savefig(PICTURE, dpi=_DPI)
