@@ -52,6 +52,12 @@ def calc_pressed_force(K_coupling):
     return (DEEP_M + TOLERANCE_M) / (1 / K_HAND + 1 / K_coupling + 1 / K_CONTACT)
 
 
+def parse_seconds(text):
+    """Returns a time, s, that the page writes as `59.9 s` or `1 min 00 s`."""
+    *minutes, seconds, _ = text.replace(" min", "").split()
+    return 60.0 * sum(map(float, minutes)) + float(seconds)
+
+
 class CockpitRun:
     """`drake-haptics run`, in a process of its own, with its page.
 
@@ -93,6 +99,10 @@ class Page:
         """Text of a part."""
         return self.evaluate(f"document.getElementById({json.dumps(name)}).textContent")
 
+    def time_s(self):
+        """Time of the run, s."""
+        return parse_seconds(self.read("time"))
+
     def force_W(self):
         """Force on the hand (3,), N, as the table has it."""
         cells = self.evaluate(
@@ -111,7 +121,7 @@ class Page:
         deadline = time.monotonic() + 180.0
         while True:
             assert time.monotonic() < deadline, "the force never came to rest"
-            now_s, force = float(self.read("time").split()[0]), self.force_W()
+            now_s, force = self.time_s(), self.force_W()
             # Rounding to hundredths may flicker.
             if before is None or np.abs(force - before).max() > 0.015:
                 before, since_s = force, now_s

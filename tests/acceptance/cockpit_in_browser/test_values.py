@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from cockpit_page import K_COUPLING, TRACE, calc_pressed_force
+from waiting import wait_until
 
 # The table has hundredths of a newton; the hand's spring is turned by the arm's rods.
 TOLERANCE_N = 0.03
@@ -17,7 +18,7 @@ def test_it_tells_of_the_scene_and_of_the_loop(page):
     assert page.read("scene") == "press"
     assert page.read("description") == "A ball is pressed onto a block."
     assert "simulated" in page.evaluate("document.getElementById('gate').title")
-    page.wait_for("parseFloat(document.getElementById('time').textContent) > 1")
+    wait_until(lambda: page.time_s() > 1.0)
     page.wait_for("document.getElementById('contacts').textContent == '1 → 1'")
     assert " of 1 ms" in page.read("tick") and "×" in page.read("rate")
     assert page.evaluate("document.getElementById('tick-bar').style.width != '0%'")
