@@ -8,8 +8,10 @@ from pathlib import Path
 from drake_haptics.analysis.delay_margin import LONGEST_DELAY
 from drake_haptics.analysis.modes import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
-from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
+from drake_haptics.analysis.stiffness_limits import format_limit
+from drake_haptics.bounds.held_handle import calc_force_delay
 from drake_haptics.report.page import check_page_path, draw_png, write_page
+from drake_haptics.scene.schema import Scene
 
 _SLOWEST_SHOWN = 12
 # The header of a table and its rows.
@@ -57,20 +59,25 @@ def describe_verdict(stability: SceneStability) -> str:
         second = (
             f"Not passive: {_percent(float(stability.damping_usage.max()))} of the"
             " damping of device and hand would be needed, so that some other hand may"
-            " make the device vibrate."
+            " make the device vibrate: lower the coupling's stiffness or damping, or"
+            " raise the rate."
         )
-    return f"{_describe_nearest_limit(stability.limits)} {second}"
+    return f"{_describe_nearest_limit(stability)} {second}"
 
 
-def _describe_nearest_limit(limits: tuple[StiffnessLimits, ...]) -> str:
+def _describe_nearest_limit(stability: SceneStability) -> str:
     """Returns that the scene is stable, with the nearest limit if there is one."""
+    delay_s = calc_force_delay(stability.scene)
+    delayed = f"{1e3 * delay_s:.3g} ms of delay" if delay_s > 0.0 else "no added delay"
+    held = f"{_describe_grip(stability.scene)} and with {delayed}"
+    limits = stability.limits
     nearest = min(limits, key=lambda limit: limit.gain_margin, default=None)
     if nearest is None or math.isinf(nearest.gain_margin):
-        return "Stable."
+        return f"Stable {held}."
     where = (
-        "Stable."
+        f"Stable {held}."
         if nearest.gain_margin >= 1.0
-        else f"Stable in this contact, but not against {nearest.against}."
+        else f"Stable in this contact {held}, but not against {nearest.against}."
     )
     return (
         f"{where} The limit of the coupling's stiffness of {nearest.kind} is"
@@ -83,8 +90,6 @@ def _describe_nearest_limit(limits: tuple[StiffnessLimits, ...]) -> str:
 def describe_situation(stability: SceneStability) -> str:
     """Returns a sentence that says what was analyzed."""
     scene, handle = stability.scene, stability.handle
-    grip = scene.hand.grip
-    held = "without a hand" if grip == "none" else f"in a {grip} grip"
     contacts = stability.num_contacts
     if contacts == 0:
         touch = "the tool touches nothing"
@@ -92,13 +97,19 @@ def describe_situation(stability: SceneStability) -> str:
         push = "contact pushes" if contacts == 1 else "contacts push"
         touch = f"{contacts} {push} the tool with {stability.contact_force_N:.2f} N"
     return (
-        f"{scene.device.preset} {held} at {scene.device.rate_hz:g} Hz; the hand stops"
-        f" at {stability.time_s:.3f} s of its path, where {touch}. Where it is held,"
+        f"{scene.device.preset} {_describe_grip(scene)} at {scene.device.rate_hz:g} Hz;"
+        f" the hand stops at {stability.time_s:.3f} s of its path, where {touch}."
+        " Where it is held,"
         f" device and hand move like {1e3 * handle.mass_kg:.0f} g and"
-        f" {1e6 * handle.inertia_kgm2:.0f} kg·mm² at least, and are damped by"
+        f" {handle.inertia_kgm2:.3g} kg·m² at least, and are damped by"
         f" {handle.damping_Ns_per_m:.3g} N·s/m and"
         f" {1e3 * handle.rotational_damping_Nms_per_rad:.3g} mN·m·s/rad at least."
     )
+
+
+def _describe_grip(scene: Scene) -> str:
+    grip = scene.hand.grip
+    return "without a hand" if grip == "none" else f"in a {grip} grip"
 
 
 def describe_restless(stability: SceneStability) -> str:
@@ -132,19 +143,11 @@ def _choose_class(stability: SceneStability) -> str:
 def _make_limits(stability: SceneStability) -> _Table:
     header = ["", "scene", "margin", "eigenvalue", "simulation", "one axis", "formula"]
     header.append("what limits it")
-    rows = [
-        [
-            f"{limit.kind}, {limit.against}, {limit.unit}",
-            format_limit(limit.stiffness),
-            _times(limit.gain_margin),
-            format_limit(limit.eigenvalue),
-            format_limit(limit.simulated),
-            format_limit(limit.one_axis),
-            format_limit(limit.formula),
-            limit.limited_by,
-        ]
-        for limit in stability.limits
-    ]
+    rows = []
+    for limit in stability.limits:
+        name = f"{limit.kind}, {limit.against}, {limit.unit}"
+        scene, *found = limit.format_values()
+        rows.append([name, scene, _times(limit.gain_margin), *found, limit.limited_by])
     return header, rows
 
 

@@ -83,6 +83,16 @@ class StiffnessLimits:
         """The largest stable stiffness over the scene's."""
         return self.eigenvalue / self.stiffness
 
+    def format_values(self) -> list[str]:
+        """Returns the stiffness in the scene and the limits, found in four ways.
+
+        One axis and the formula are of a rigid wall, and are left out beside another
+        contact.
+        """
+        limits = [self.eigenvalue, self.simulated, self.one_axis, self.formula]
+        words = [format_limit(value) for value in (self.stiffness, *limits)]
+        return words if self.against == "a rigid wall" else [*words[:3], "–", "–"]
+
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields and the margin, with None for infinities and NaN."""
         return to_plain_data(

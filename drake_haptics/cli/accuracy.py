@@ -125,7 +125,8 @@ def _make_table(study: AccuracyStudy) -> Table:
 @click.option(
     "--quick",
     is_flag=True,
-    help="Measure less: one setting of each key, once, and no other library.",
+    help="Measure less: one setting of each key, once, in the motion's first second,"
+    " and no other library.",
 )
 @click.option(
     "--only",

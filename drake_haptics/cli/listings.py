@@ -63,7 +63,15 @@ def _to_dict(preset: DevicePreset) -> dict[str, object]:
 def _print_devices(presets: dict[str, DevicePreset]) -> None:
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("device", no_wrap=True)
-    for heading in ["N", "N·m", "N/m", "N·m/rad", "radius, m", "axes", "twin"]:
+    for heading in [
+        "force\nN",
+        "torque\nN·m",
+        "stiffness\nN/m",
+        "torsional\nN·m/rad",
+        "reach\nm",
+        "\naxes",
+        "\ntwin",
+    ]:
         table.add_column(heading, justify="right", no_wrap=True)
     for name, preset in presets.items():
         table.add_row(
@@ -80,7 +88,12 @@ def _print_devices(presets: dict[str, DevicePreset]) -> None:
     # A narrower terminal wraps the rows; truncated, they would lose numbers.
     console.width = max(_WIDTH, console.width)
     console.print(table)
-    console.print("\naxes: how many of the handle's six have motors", style="dim")
+    console.print(
+        "\nforce, torque and stiffness: the largest that it is rated for; reach: the"
+        " radius of its workspace; axes: how many of the handle's six have motors;"
+        " twin: whether it can be simulated",
+        style="dim",
+    )
     for source in sorted({preset.source for preset in presets.values()}):
         named = [name for name, preset in presets.items() if preset.source == source]
         console.print(f"{', '.join(named)}: {source}", style="dim")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import signal
+import threading
 from functools import partial
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from drake_haptics.cli.options import (
     write_json,
 )
 from drake_haptics.common.one_line import count
+from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.geometry.decomposition.approximate import check_error
 from drake_haptics.geometry.decomposition.decompose import (
     METHODS,
@@ -152,7 +153,8 @@ def _view(result: Decomposition, show: bool, html: Path | None) -> None:
         if html is not None:
             viewer.write_html(html)
         if show:
-            with contextlib.suppress(KeyboardInterrupt):
+            ended = threading.Event()
+            with stop_on_signals(ended.set):
                 for line in describe_page(viewer.url):
                     click.echo(line, err=True)
                 click.echo(
@@ -161,4 +163,4 @@ def _view(result: Decomposition, show: bool, html: Path | None) -> None:
                     err=True,
                 )
                 click.echo("Ctrl-C ends.", err=True)
-                signal.pause()
+                ended.wait()

@@ -16,7 +16,6 @@ from drake_haptics.analysis.stability_page import (
     describe_verdict,
     write_stability_page,
 )
-from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
@@ -112,17 +111,10 @@ def _print(result: SceneStability, path: Path) -> None:
     for heading in [*headings, "one axis", "formula"]:
         table.add_column(heading, justify="right" if table.columns else "left")
     for limit in result.limits:
-        values = (
-            limit.stiffness,
-            limit.eigenvalue,
-            limit.simulated,
-            limit.one_axis,
-            limit.formula,
-        )
         # Short enough for a terminal of 80 columns.
         against = limit.against.rpartition(" ")[2]
         name = f"{limit.kind}, {against}, {limit.unit}"
-        table.add_row(name, *map(format_limit, values))
+        table.add_row(name, *limit.format_values())
     console.print(table)
     for limit in result.limits:
         console.print(

@@ -19,6 +19,7 @@ from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceReading,
+    Fault,
     GateState,
     LinkStatus,
 )
@@ -32,21 +33,23 @@ _STYLES = {
     GateState.ACTIVE: "green",
     GateState.FAULT: "bold red",
 }
+_ENABLE = "Enter enables it again"
+# The host or the driver stood still; no request reaches a driver that has ended.
+_REMEDIES = {Fault.STALE: f"while its driver runs, {_ENABLE}"}
 
 
-def describe_gate(
-    reading: DeviceReading | None, remedy: str = "Enter enables it again"
-) -> str:
+def describe_gate(reading: DeviceReading | None, remedy: str = "") -> str:
     """Returns whether a device shows force, and if not, why and what to do.
 
     Args:
         reading: The newest reading; None before the first.
-        remedy: Advice about a fault.
+        remedy: Advice about a fault. Defaults to that of a host, by the fault.
     """
     if reading is None:
         return "[dim]silent[/]"
     words = reading.gate.name
     if reading.gate == GateState.FAULT:
+        remedy = remedy or _REMEDIES.get(reading.fault, _ENABLE)
         words += f" ({describe_fault(reading.fault.name)}): {remedy}"
     return f"[{_STYLES[reading.gate]}]{words}[/]"
 

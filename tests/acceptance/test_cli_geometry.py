@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+import urllib.error
 import urllib.request
 
 import numpy as np
@@ -120,7 +121,8 @@ def test_decompose_says_that_open_surfaces_are_one_sided(environment):
     assert "one-sided" in result.stdout
 
 
-def test_decompose_shows_the_pieces_until_interrupted(environment, l_file):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_decompose_shows_the_pieces_until_interrupted(environment, l_file, number):
     command = [COMMAND, "decompose", str(l_file), "--unit", "mm", "--show"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
         line = process.stderr.readline()
@@ -129,9 +131,12 @@ def test_decompose_shows_the_pieces_until_interrupted(environment, l_file):
             assert page.status == 200
         told = process.stderr.readline()
         assert told.startswith("Left the pieces in their places; right")
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         assert process.wait(timeout=120) == 0
         assert "Traceback" not in process.stderr.read()
+    # Meshcat's server ends with it.
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(address, timeout=120)
 
 
 @pytest.mark.parametrize("subcommand", ["check", "decompose"])

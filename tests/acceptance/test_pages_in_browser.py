@@ -1,15 +1,23 @@
 """The pages of figures, as a browser shows them on a desk and on a phone."""
 
+import time
+from contextlib import closing
+
 import numpy as np
 import pytest
 from accuracy_samples import make_peers, make_study
 from headless_browser import HeadlessBrowser
 from held_samples import analyze_sample
+from mesh_samples import l_prism
 from paper_samples import make_evaluation
+from waiting import wait_until
 
 from drake_haptics.analysis.stability_page import write_stability_page
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
 from drake_haptics.evaluation.paper.report import write_paper_page
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.decomposition.viewer import DecompositionViewer
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 
 @pytest.fixture(params=[(1280, False), (390, True)], ids=["desk", "phone"])
@@ -88,3 +96,21 @@ def test_the_page_on_the_papers_figures_is_readable(browser, tmp_path):
         " m.clientWidth && ['agrees', 'better', 'differs', 'not measured']"
         ".includes(m.innerText))"
     )
+
+
+def test_the_pieces_of_a_mesh_are_seen_whole(browser, tmp_path):
+    result = decompose(Mesh.from_arrays(*l_prism()), cache=False)
+    with closing(DecompositionViewer(result)) as viewer:
+        viewer.write_html(tmp_path / "page.html")
+    browser.open((tmp_path / "page.html").as_uri())
+
+    def find_drawn():
+        """Returns the columns below the caption that are not background alone."""
+        seen = browser.screenshot()[120:].astype(int)
+        return np.flatnonzero((np.ptp(seen, axis=2) > 40).any(axis=0))
+
+    wait_until(lambda: len(find_drawn()) > 100, lambda: time.sleep(0.2))
+    drawn, width = find_drawn(), browser.screenshot().shape[1]
+    assert drawn[0] > 0 and drawn[-1] < width - 1
+    assert np.ptp(drawn) > width / 3
+    assert browser.errors == []

@@ -18,6 +18,7 @@ from drake_haptics.analysis.stability_page import (
     describe_verdict,
     write_stability_page,
 )
+from drake_haptics.scene.schema import ForceDelayParameters
 
 GROWING = Mode(
     ModeKind.MOTION,
@@ -46,9 +47,10 @@ def write(stability, folder, name="a_scene"):
 
 def test_a_stable_and_passive_scene(sample):
     assert describe_verdict(sample) == (
-        "Stable. The limit of the coupling's stiffness of translation is 16744 N/m"
-        " against a rigid wall; the scene has 800 N/m, a margin of 20.9. Passive:"
-        " no hand can make the device vibrate."
+        "Stable in a firm grip and with no added delay. The limit of the coupling's"
+        " stiffness of translation is 16744 N/m against a rigid wall; the"
+        " scene has 800 N/m, a margin of 20.9. Passive: no hand can make the device"
+        " vibrate."
     )
 
 
@@ -63,21 +65,25 @@ def test_a_scene_that_is_not_passive_says_how_much_damping_it_needs(sample):
     needy = replace(sample, damping_usage=3.0 * sample.damping_usage)
     assert not needy.is_passive
     words = describe_verdict(needy)
-    assert words.startswith("Stable. The limit")
+    assert words.startswith("Stable in a firm grip")
     assert "Not passive: 150 % of the damping of device and hand would be" in words
+    assert words.endswith(
+        "lower the coupling's stiffness or damping, or raise the rate."
+    )
 
 
 @pytest.mark.parametrize("limits", [(), (make_limits(math.inf),)])
 def test_limits_that_do_not_exist_are_not_counted(sample, limits):
     words = describe_verdict(replace(sample, limits=limits))
-    assert words.startswith("Stable. Passive")
+    assert words.startswith("Stable in a firm grip and with no added delay. Passive")
     both = (make_limits(math.inf, "this contact"), make_limits(1600.0))
     assert "a margin of 2." in describe_verdict(replace(sample, limits=both))
 
 
 def test_a_limit_below_the_scenes_stiffness_is_a_warning(sample):
     words = describe_verdict(replace(sample, limits=(make_limits(400.0),)))
-    assert words.startswith("Stable in this contact, but not against a rigid wall. The")
+    assert words.startswith("Stable in this contact in a firm grip and with no added")
+    assert ", but not against a rigid wall. The limit" in words
     assert "of translation is 400 N/m" in words
     assert "the scene has 800 N/m, a margin of 0.5." in words
 
@@ -94,6 +100,13 @@ def test_the_situation_is_told(sample):
     )
     free = replace(sample.scene, hand=replace(sample.scene.hand, grip="none"))
     assert "without a hand" in describe_situation(replace(sample, scene=free))
+
+
+def test_the_delay_of_the_scene_is_in_the_verdict(sample):
+    twin = replace(sample.scene.device.twin, delay=ForceDelayParameters(samples=3))
+    device = replace(sample.scene.device, twin=twin)
+    late = replace(sample, scene=replace(sample.scene, device=device))
+    assert "in a firm grip and with 3 ms of delay." in describe_verdict(late)
 
 
 def test_firmer_contacts_that_do_not_rest_are_told(sample):
@@ -140,8 +153,10 @@ def test_the_page_has_the_figures(sample, tmp_path):
         "50 % at",
     ]
     for limit in data["limits"]:
-        for name in ("stiffness", "eigenvalue", "simulated", "one_axis", "formula"):
-            figures.append(f"<td>{limit[name]:.7g}</td>")
+        shown = ["stiffness", "eigenvalue", "simulated"]
+        if limit["against"] == "a rigid wall":
+            shown += ["one_axis", "formula"]
+        figures += [f"<td>{limit[name]:.7g}</td>" for name in shown]
         figures += [f"{limit['gain_margin']:.3g} times", limit["limited_by"]]
     figures += [mode.describe() for mode in sample.modes[:12]]
     assert [figure for figure in figures if figure not in page] == []

@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import pytest
 from fake_device import make_reading
 
 from drake_haptics.cli.status_line import (
@@ -13,12 +14,16 @@ from drake_haptics.cli.status_line import (
 from drake_haptics.device.backend import Fault, GateState, LinkStatus
 
 
-def test_a_fault_says_why_and_what_to_do():
-    reading = dataclasses.replace(
-        make_reading(), gate=GateState.FAULT, fault=Fault.NOT_FINITE
-    )
-    words = describe_gate(reading)
-    assert "FAULT (not finite): Enter enables it again" in words
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        (Fault.NOT_FINITE, "FAULT (not finite): Enter enables it again"),
+        (Fault.STALE, "FAULT (stale): while its driver runs, Enter enables it again"),
+    ],
+)
+def test_a_fault_says_why_and_what_to_do(fault, words):
+    reading = dataclasses.replace(make_reading(), gate=GateState.FAULT, fault=fault)
+    assert words in describe_gate(reading)
 
 
 def test_an_active_device_has_nothing_to_say():

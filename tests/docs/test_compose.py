@@ -40,6 +40,23 @@ def test_the_ring_comes_down_over_the_peg(tmp_path):
     assert abs(height - (12.0 + 2.0 - 0.1 * 9.81 / 4.0)) < 0.2
 
 
+def test_the_file_adds_what_the_call_adds(tmp_path):
+    """Ends as the first program does."""
+    (text,) = re.findall(r"^```yaml\n(.*?)^```", TEXT, re.M | re.S)
+    (tmp_path / "rendering.yaml").write_text(text, encoding="utf-8")
+    call = """from drake_haptics import (
+    ApplyHapticRenderingConfig, load_haptic_rendering_config
+)
+config = load_haptic_rendering_config("rendering.yaml")
+rendering = ApplyHapticRenderingConfig(config, builder, plant, scene_graph)
+"""
+    program, count = re.subn(
+        r"(?ms)^rendering = AddHapticRendering\(.*?^\)\n", call, PROGRAMS[0]
+    )
+    assert count == 1
+    assert run_programs(tmp_path, [program]) == run_programs(tmp_path, PROGRAMS[:1])
+
+
 def test_a_tick_reads_what_a_log_notes(tmp_path):
     most, apart = map(
         float, re.findall(r"[\d.]+(?:e-?\d+)?", run_programs(tmp_path, PROGRAMS[1:]))

@@ -18,7 +18,7 @@ _BOLT_ROOT_M, _BOLT_CREST_M = 0.008, 0.0105
 _BOLT_TURNS = 3
 _RADIUS_M, _HEAD_M = 0.026, 0.008
 # Distance between the teeth of the nut and the root of the bolt. As the teeth are cut
-# from 24 sides, it leaves the nut 0.1 mm of play.
+# from 24 sides, the least clearance on each side is 0.1 mm.
 _RADIAL_PLAY_M = 3.9e-4
 _BORE_M = 0.0125
 # Sections of the nut, of 24 in a turn, and those that have a tooth.

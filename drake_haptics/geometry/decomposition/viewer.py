@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 import os
 from collections.abc import Callable
 
@@ -26,6 +27,20 @@ _DRAWN_EXTENT_M = 1.5
 # Displacement of the pieces of the exploded copy, relative to their distance from the
 # middle.
 _EXPLOSION = 0.5
+# Position of the camera, m; y is up in its frame. Half of its view's height is the
+# tangent times the distance.
+_CAMERA_M = (2.4, 0.9, 0.0)
+_TANGENT = math.tan(math.radians(75.0 / 2.0))
+# Shows both copies on a page that is narrower than they are, such as a phone's.
+_FIT = """<script>
+function fit() {{
+  viewer.camera.zoom = Math.min(1, innerWidth / innerHeight / {aspect:.3f});
+  viewer.camera.updateProjectionMatrix();
+  viewer.set_dirty();
+}}
+addEventListener("resize", fit);
+fit();
+</script>"""
 
 
 class DecompositionViewer:
@@ -42,13 +57,13 @@ class DecompositionViewer:
     def __init__(self, decomposition: Decomposition) -> None:
         with contextlib.redirect_stdout(io.StringIO()):  # it prints its address
             self._meshcat = meshcat.Visualizer()
-        self._draw(decomposition)
+        fit = _FIT.format(aspect=self._draw(decomposition))
         pieces = count(len(decomposition.pieces), "convex piece")
         self._caption = (
             '<div style="position:fixed;left:1.2em;top:1.2em;padding:0.7em 1em;'
             "font:12px/1.55 sans-serif;color:#333;background:rgba(255,255,255,0.75);"
             f'border-radius:0.5em"><b>{pieces}</b><br>left: in place<br>'
-            "right: moved apart, in gray what is not on the mesh</div>"
+            f"right: moved apart, in gray what is not on the mesh</div>{fit}"
         )
 
     def close(self) -> None:
@@ -67,13 +82,18 @@ class DecompositionViewer:
         with open(path, "w", encoding="utf-8") as stream:
             stream.write(extend_page(self._meshcat.static_html(), self._caption))
 
-    def _draw(self, decomposition: Decomposition) -> None:
+    def _draw(self, decomposition: Decomposition) -> float:
+        """Draws both copies; returns the width of the view that they need.
+
+        Returns:
+            Width over height.
+        """
         on_mesh, virtual = piece_surfaces(decomposition.pieces)
         vertices = decomposition.mesh.vertices
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         middle = (low + high) / 2
         scale = _DRAWN_EXTENT_M / float((high - low).max())
-        width = float((high - low)[1]) * scale
+        depth, width, _ = (high - low) * scale
         centroids = np.array([piece.centroid for piece in decomposition.pieces])
 
         def in_place(drawn: ColoredTriangles) -> np.ndarray:
@@ -89,6 +109,9 @@ class DecompositionViewer:
         self._add(root["in place"], on_mesh, in_place, -gap)
         self._add(root["apart"]["facets on the mesh"], on_mesh, exploded, gap)
         self._add(root["apart"]["virtual facets"], virtual, exploded, gap)
+        farthest = gap + width * (1 + _EXPLOSION) / 2
+        nearest = math.hypot(*_CAMERA_M) - depth * (1 + _EXPLOSION) / 2
+        return float(farthest / (nearest * _TANGENT))
 
     def _set_scene(self) -> None:
         background = self._meshcat["/Background"]
@@ -97,7 +120,7 @@ class DecompositionViewer:
         for path in ("/Grid", "/Axes"):
             self._meshcat[path].set_property("visible", False)
         camera = self._meshcat["/Cameras/default/rotated/<object>"]
-        camera.set_property("position", [2.4, 0.9, 0.0])  # y is up in this frame
+        camera.set_property("position", list(_CAMERA_M))
 
     def _add(
         self,

@@ -113,7 +113,11 @@ def test_one_field_has_gap_and_depth_by_their_sign(page):
 def test_minutes_of_a_run_are_read_as_they_are_written(page):
     """A wait for half a second of the run once read the minutes only."""
     shown = "document.getElementById('time').textContent"
-    for time_s, text in [(59.9, "59.9 s"), (60.0, "1 min 00 s"), (754.2, "12 min 34 s")]:
+    for time_s, text in [
+        (59.9, "59.9 s"),
+        (60.0, "1 min 00 s"),
+        (754.2, "12 min 34 s"),
+    ]:
         assert feed(page, shown, time_s=time_s) == text
         assert parse_seconds(text) == pytest.approx(time_s, abs=0.5)
 
