@@ -2518,7 +2518,7 @@ class ContactChain(SceneTracker):
     def __init__(self, tracker: SceneTracker) -> None:
         """Goes on from the state of a tracker, which stays as it is."""
 
-    def set_law(self, tolerance: float, delta: float | None, objects: ObjectFrames, materials: ContactMaterials) -> None:
+    def set_law(self, tolerance: float, delta: float | None, objects: ObjectFrames, materials: ContactMaterials, shading: ContactShading | None = None) -> None:
         """
         Sets the law by which contacts push.
 
@@ -2527,6 +2527,7 @@ class ContactChain(SceneTracker):
             delta: size of the octree's cells, m; None lets contacts share stiffness.
             objects: frames of the objects, which rest.
             materials: materials of the objects.
+            shading: `ContactShading` of the normals; None for none.
         """
 
     def query(self, X_WT: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
@@ -2570,6 +2571,11 @@ class ContactChain(SceneTracker):
 
         Raises:
             ValueError: a size does not match, or an object moves.
+        """
+
+    def find_braking(self, gains: BrakingGains, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+        """
+        The wrench model (78,) of `pre_contact_braking` on the tool, whose pose (7,) and spatial velocity (6,) are given.
         """
 
     @property

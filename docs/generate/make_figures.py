@@ -89,8 +89,7 @@ FIGURES = (
     Figures(
         "docs/effects.md",
         ((f"{_PROGRAMS}/effect_costs.py", "--write"),),
-        20,
-        timed=True,
+        15,
     ),
     _table("accuracy", "accuracy", 15, timed=True),
     _table("paper", "paper", 3, *_MESHES, timed=True),

@@ -130,7 +130,7 @@ def AddHapticLoop(
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     sheds_load = load_shedding is not None
-    is_chained = in_one_call and not sheds_load and can_chain(objects, contact, effects)
+    is_chained = in_one_call and not sheds_load and can_chain(objects, contact)
     if load_shedding is not None:
         builder.AddNamedSystem("load_shedding", load_shedding)
     builder.AddNamedSystem("device", device)

@@ -87,7 +87,8 @@ def add_contact_systems(
         tool: Pieces of the tool, in its frame T.
         objects: Objects that the tool meets.
         contact: Tolerance, clustering and gains.
-        effects: Effects; braking determines how far contacts are searched for.
+        effects: Effects; braking determines how far contacts are searched for, and
+            shading the normals of the chain.
         materials: Material of each object; gains that it does not give default to those
             of `contact`.
         period_s: The tick, s.
@@ -119,6 +120,7 @@ def add_contact_systems(
             # not.
             enable_load_shedding=enable_load_shedding and contact.query_rate_hz is None,
             enable_chain=enable_chain,
+            enable_shading=effects.shading is not None,
         ),
     )
     sample = advance = None
@@ -157,18 +159,14 @@ def add_contact_systems(
     return ContactSystems(query, clustering, force, sample, advance)
 
 
-def can_chain(
-    objects: Sequence[ContactObject], contact: ContactParameters, effects: Effects
-) -> bool:
+def can_chain(objects: Sequence[ContactObject], contact: ContactParameters) -> bool:
     """Returns whether the core goes from query to force in one call.
 
-    It does not where an effect reads the contacts at a port, or changes them.
+    It does if there is a query at every tick and no object moves.
     """
     return (
         not is_constraint(contact)
         and contact.query_rate_hz is None
-        and effects.shading is None
-        and effects.braking is None
         and all(item.X_WO is not None for item in objects)
     )
 

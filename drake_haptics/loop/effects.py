@@ -110,7 +110,13 @@ def _add_shading(effect: ShadingParameters, site: EffectSite) -> System:
         crease_angle_deg=effect.crease_angle_deg,
         shaded=[material.shading is not False for material in site.materials],
     )
-    return _add(site, "force_shading", system)
+    _add(site, "force_shading", system)
+    if (chain := site.sources.get("contact_chain")) is not None:
+        query = chain.get_system()
+        site.builder.Connect(
+            system.GetOutputPort("shading"), query.GetInputPort("shading")
+        )
+    return system
 
 
 def _add_friction(effect: FrictionParameters, site: EffectSite) -> System:
@@ -142,6 +148,7 @@ def _add_braking(effect: BrakingParameters, site: EffectSite) -> System:
         damping_Ns_per_m=effect.damping_Ns_per_m,
         distance_m=effect.distance_m,
         enable_load_shedding="load_shedding" in site.sources,
+        enable_chain="contact_chain" in site.sources,
     )
     return _add(site, "pre_contact_braking", system)
 

@@ -150,7 +150,7 @@ class RenderingWiring:
             effects,
             materials,
             period_s,
-            enable_chain=can_chain(self._objects, contact, effects),
+            enable_chain=can_chain(self._objects, contact),
             warns_deep=True,
         )
         force, query = found.penalty_force, found.contact_query

@@ -72,6 +72,7 @@ class ContactQuery(DifferentiableSystem):
         - load_shedding (with load shedding)
         - rule (with the chain)
         - gains (with the chain)
+        - shading (with the chain and shading)
         output_ports:
         - contacts
         - contact_chain (with the chain)
@@ -81,9 +82,10 @@ class ContactQuery(DifferentiableSystem):
     `LoadShedding`: contacts are searched for only up to its share of the tolerance.
 
     `contact_chain` is a `drake_haptics._core.ContactChain`, which goes on to forces by
-    the `rule` of `ContactClustering` and the `gains` of `PenaltyForce`. A `HapticTool`
-    that reads it evaluates none of the ports in between, and `contacts` then shows the
-    contacts that the tool's step has found. It has no value under AutoDiffXd.
+    the `rule` of `ContactClustering` and the `gains` of `PenaltyForce`; if there is a
+    `ForceShading`, its `shading` turns the normals first. A `HapticTool` that reads it
+    evaluates none of the ports in between, and `contacts` then shows the contacts that
+    the tool's step has found. It has no value under AutoDiffXd.
 
     The tolerance is an abstract parameter of the Context (index 1), a float; see
     `set_tolerance`.
@@ -109,6 +111,7 @@ class ContactQuery(DifferentiableSystem):
         *,
         enable_load_shedding: bool = False,
         enable_chain: bool = False,
+        enable_shading: bool = False,
     ):
         """Constructs the system.
 
@@ -124,6 +127,7 @@ class ContactQuery(DifferentiableSystem):
             enable_load_shedding: Whether the loop sheds load, which adds a port.
             enable_chain: Whether to add the port `contact_chain` with its inputs; then
                 no object may move.
+            enable_shading: Whether the chain has an input for shading.
 
         Raises:
             ValueError: The tolerance is negative or not finite, there is no object, a
@@ -166,12 +170,12 @@ class ContactQuery(DifferentiableSystem):
             self._calc_contacts,
             {self.all_input_ports_ticket(), from_tolerance},
         )
-        self._law: tuple[InputPort, InputPort] | None = None
+        self._law: list[InputPort] = []
         # A Context remembers its last search, which never changes a result by more than
         # round-off. As a cache entry it picks up another tolerance without cost per
         # tick.
         if enable_chain:
-            self._law = self._declare_law()
+            self._law = self._declare_law(enable_shading)
             self._eval_tracker = self.DeclareAbstractOutputPort(
                 "contact_chain",
                 lambda: Value[object](_NOTHING),
@@ -188,18 +192,15 @@ class ContactQuery(DifferentiableSystem):
                 prerequisites_of_calc={from_tolerance},
             ).Eval
 
-    def _declare_law(self) -> tuple[InputPort, InputPort]:
+    def _declare_law(self, enable_shading: bool) -> list[InputPort]:
         """Declares the inputs of the chain."""
         if self._X_WO:
             raise ValueError("enable_chain: the objects must rest")
-        names = ("rule", "gains")
+        names = ["rule", "gains", *(["shading"] if enable_shading else [])]
         self.undifferentiated = frozenset({*names, "contact_chain"})
         p_WO = [item.X_WO.translation() for item in self._objects if item.X_WO]
         self._at_rest = ObjectFrames(np.array(p_WO), np.zeros((len(p_WO), 6)))
-        rule, gains = (
-            self.DeclareAbstractInputPort(name, Value[object]()) for name in names
-        )
-        return rule, gains
+        return [self.DeclareAbstractInputPort(name, Value[object]()) for name in names]
 
     def get_tolerance(self, context: Context) -> float:
         """Returns the distance up to which pairs are contacts, m.
@@ -299,7 +300,7 @@ class ContactQuery(DifferentiableSystem):
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
                 tracker.set_object_pose(i, item.X_WO)
-        if self._law is not None and not isinstance(tracker, ContactChain):
+        if self._law and not isinstance(tracker, ContactChain):
             tracker = ContactChain(tracker)
         return tracker
 
@@ -313,13 +314,17 @@ class ContactQuery(DifferentiableSystem):
             hint = context.get_abstract_parameter(self._hint).get_value()
             tracker = self._make_tracker(hint, tolerance_m)
             value.set_value(tracker)
-        if self._law is None or not isinstance(tracker, ContactChain):
+        if not self._law or not isinstance(tracker, ContactChain):
             return
         # A query that is used for its contacts alone needs no law.
         if all(port.HasValue(context) for port in self._law):
-            rule, gains = (port.Eval(context) for port in self._law)
+            rule, gains, *shading = (port.Eval(context) for port in self._law)
             tracker.set_law(
-                rule.tolerance_m, rule.delta_m, self._at_rest, gains.materials
+                rule.tolerance_m,
+                rule.delta_m,
+                self._at_rest,
+                gains.materials,
+                *shading,
             )
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:

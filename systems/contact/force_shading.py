@@ -40,9 +40,12 @@ class ForceShading(DifferentiableSystem):
         - X_WO_<name of each object that moves>
         output_ports:
         - contacts
+        - shading
 
     Poses are [qw qx qy qz x y z] in the world, m, those at which the contacts were
-    found. Both `contacts` are a `drake_haptics.ContactSet`, immutable.
+    found. Both `contacts` are a `drake_haptics.ContactSet`, immutable. `shading` is the
+    `drake_haptics._core.ContactShading` itself, with which the `contact_chain` of
+    `ContactQuery` does the same; it has no value under AutoDiffXd.
 
     Pieces of a decomposition that were not made from triangles (methods "hull" and
     "coacd") keep the normals of their facets. A shaded force is not the gradient of any
@@ -53,6 +56,8 @@ class ForceShading(DifferentiableSystem):
     place on the triangle. At an edge between triangles they are those of the triangle
     that the witness point is taken to be on.
     """
+
+    undifferentiated = frozenset({"shading"})
 
     def __init__(
         self,
@@ -110,6 +115,9 @@ class ForceShading(DifferentiableSystem):
             self._calc_contacts,
             {self.all_input_ports_ticket()},
         )
+        self.DeclareAbstractOutputPort(
+            "shading", Value[object], self._show_shading, {self.nothing_ticket()}
+        )
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
         """Returns the shaded contacts with their derivatives."""
@@ -125,6 +133,9 @@ class ForceShading(DifferentiableSystem):
                 q_WO.ravel(), by_q_WO.reshape(q_WO.size, at.num_derivatives)
             ),
         )
+
+    def _show_shading(self, context: Context, shading: AbstractValue) -> None:
+        shading.set_value(self._shading)
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
         q_WO = self._q_WO

@@ -44,6 +44,7 @@ class PreContactBraking(DifferentiableSystem):
         - X_WO_<name of each object that moves>
         - V_WO_<name of each object that moves>
         - load_shedding (with load shedding)
+        - contact_chain (with the chain)
         output_ports:
         - wrench_model
         - F_O_W (with objects that move)
@@ -51,7 +52,9 @@ class PreContactBraking(DifferentiableSystem):
     `contacts` is a `drake_haptics.ContactSet`; the query must find contacts up to at
     least D. Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are spatial
     velocities [ω; v] of the frame's origin in the world, rad/s and m/s. `load_shedding`
-    is that of `LoadShedding`: D shrinks to its share.
+    is that of `LoadShedding`: D shrinks to its share. `contact_chain` is that of
+    `ContactQuery`, with which the core finds contacts and braking in one call, without
+    the port `contacts`.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
@@ -64,6 +67,8 @@ class PreContactBraking(DifferentiableSystem):
     not; at rest they are the mean of approach and parting.
     """
 
+    undifferentiated = frozenset({"contact_chain"})
+
     def __init__(
         self,
         objects: Sequence[ContactObject],
@@ -71,6 +76,7 @@ class PreContactBraking(DifferentiableSystem):
         damping_Ns_per_m: float,
         distance_m: float,
         enable_load_shedding: bool = False,
+        enable_chain: bool = False,
     ):
         """Constructs the system.
 
@@ -79,10 +85,12 @@ class PreContactBraking(DifferentiableSystem):
             damping_Ns_per_m: Damping b half-way to the surface, N·s/m.
             distance_m: Distance D at which braking begins, m.
             enable_load_shedding: Whether the loop sheds load, which adds a port.
+            enable_chain: Whether there is the port `contact_chain`; the objects must
+                rest then, and no load be shed.
 
         Raises:
-            ValueError: The damping is negative, the distance not positive, or one of
-                them not finite.
+            ValueError: The damping is negative, the distance not positive, one of them
+                not finite, or an object of a chain moves.
         """
         super().__init__()
         self._gains = BrakingGains(damping_Ns_per_m, distance_m)
@@ -97,9 +105,17 @@ class PreContactBraking(DifferentiableSystem):
             if enable_load_shedding
             else None
         )
+        calc_wrench_model = self._calc_wrench_model
+        if enable_chain:
+            if any(item.X_WO is None for item in objects):
+                raise ValueError("enable_chain: the objects must rest")
+            self._chain = self.DeclareAbstractInputPort(
+                "contact_chain", Value[object]()
+            )
+            calc_wrench_model = self._calc_chained_wrench_model
         from_inputs = {self.all_input_ports_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
-            "wrench_model", 78, self._calc_wrench_model, from_inputs
+            "wrench_model", 78, calc_wrench_model, from_inputs
         )
         # Rows of the objects that move, in what the core returns.
         self._moving = [
@@ -159,6 +175,13 @@ class PreContactBraking(DifferentiableSystem):
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._eval_wrenches(context)[:78])
+
+    def _calc_chained_wrench_model(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(
+            self._chain.Eval(context).find_braking(
+                self._gains, self._X_WT.Eval(context), self._V_WT.Eval(context)
+            )
+        )
 
     def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._eval_wrenches(context)[self._moving])

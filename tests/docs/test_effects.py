@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import effect_child
@@ -23,7 +23,6 @@ COSTS = Costs(
     control=[100_000.0, 100_003.0, 99_994.0],
     loop={name: 1e5 + 1000.0 * (i + 1) for i, name in enumerate(EFFECTS)},
     core={name: 100.0 * (i + 1) for i, name in enumerate(CORE_CALLS)},
-    tick_us={name: 100.0 + 10.0 * i for i, name in enumerate(["none", *EFFECTS])},
 )
 
 
@@ -57,19 +56,10 @@ def test_the_calls_that_are_counted_are_made(name):
 def test_costs_are_differences_to_the_base():
     rows = cells(with_figures(PAGE.read_text(encoding="utf-8"), COSTS))
     shading = rows["force shading, `effects.shading`"]
-    assert shading[3:6] == [f"{COSTS.core['shading']:.0f}", "+1,000", "+10"]
+    assert shading[3:5] == [f"{COSTS.core['shading']:.0f}", "+1,000"]
     elastic = rows["near-contact elastic force, `contact.stiffness_N_per_m`"]
-    assert elastic[3:6] == [f"{COSTS.core['force']:.0f}", "in the base", "in the base"]
+    assert elastic[3:5] == [f"{COSTS.core['force']:.0f}", "in the base"]
     assert rows["no effect named"] == ["99,990", "100,007"]
-
-
-def test_costs_without_times_leave_those_of_the_page():
-    timed = with_figures(PAGE.read_text(encoding="utf-8"), COSTS)
-    counted = replace(COSTS, bare=[2e5] * 3, tick_us={})
-    rows = cells(with_figures(timed, counted))
-    shading = rows["force shading, `effects.shading`"]
-    assert shading[4:6] == ["+-99,000", "+10"]
-    assert rows["no effect named"] == ["200,000", "200,000"]
 
 
 def test_writing_twice_changes_nothing_but_the_figures():

@@ -309,18 +309,39 @@ def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain(
     np.testing.assert_array_equal(found, expected)
 
 
+@pytest.mark.parametrize("clustering", ["shared", "octree"])
 @pytest.mark.parametrize(
     "effects",
     [
-        Effects(shading=ShadingParameters()),
+        Effects(shading=ShadingParameters(crease_angle_deg=60.0)),
         Effects(braking=BrakingParameters()),
+        Effects(
+            shading=ShadingParameters(crease_angle_deg=60.0),
+            braking=BrakingParameters(),
+            friction=FrictionParameters(),
+        ),
     ],
+    ids=["shading", "braking", "all"],
 )
-def test_an_effect_that_reads_contacts_leaves_the_chain_out(effects: Effects) -> None:
-    scene = load_scene(find_scene("cup_spoon"))
-    scene.effects = effects
-    tool = BuildHapticDiagram(scene).loop.haptic_tool
-    assert not tool.HasInputPort("contact_chain")
+def test_effects_that_read_contacts_find_them_in_the_chain_bit_by_bit(
+    monkeypatch: pytest.MonkeyPatch, effects: Effects, clustering: str
+) -> None:
+    def cluster(scene: Scene) -> None:
+        scene.contact.clustering = clustering
+        scene.contact.cluster_size_m = 5e-3 if clustering == "octree" else None
+
+    def add_effects(scene: Scene) -> None:
+        cluster(scene)
+        scene.effects = effects
+
+    chained, separate = cup(monkeypatch, add_effects)
+    felt = run(chained, 0.9)
+    assert_same(felt, run(separate, 0.9))
+    plain = run(cup(monkeypatch, cluster)[0], 0.9)
+    assert np.abs(felt[-1] - plain[-1]).max() > 1e-4
+    # Reading what is between changes nothing, and is the same.
+    between = run(chained, 0.9, read_between)
+    assert_same(between, run(separate, 0.9, read_between))
 
 
 @pytest.mark.filterwarnings(f"ignore::{SceneWarning.__module__}.SceneWarning")

@@ -53,10 +53,9 @@ def test_a_diagram_holds_exactly_the_systems_of_the_effects_named(tmp_path, effe
     for name, system in vars(loop.effects).items():
         assert (system is not None) == (name in effects)
     # No port is left over either: the tool has one for each force, and two of the
-    # contact chain where neither shading nor braking is on, and all are fed.
+    # contact chain, and all are fed.
     forces = {"coupling", "contact"} | {"friction", "braking", "gravity"} & {*effects}
-    is_chained = not {"shading", "braking"} & {*effects}
-    chain = {"contact_chain", "motions_and_gains"} if is_chained else set()
+    chain = {"contact_chain", "motions_and_gains"}
     tool = loop.haptic_tool
     inputs = {tool.get_input_port(i).get_name() for i in range(tool.num_input_ports())}
     assert inputs == forces | chain

@@ -19,6 +19,7 @@ from drake_haptics.scene.schema import (
     CouplingParameters,
     Effects,
     FrictionParameters,
+    ShadingParameters,
 )
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.systems.contact.contact_clustering import ClusteringRule
@@ -74,6 +75,22 @@ def test_friction_holds_a_body_by_the_chain_as_by_the_ports(monkeypatch) -> None
     np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9)
     smooth = advance(*make_both(monkeypatch, make_scene)[0], 0.2)
     assert np.abs(one - smooth).max() > 1e-3
+
+
+def test_braking_and_shading_act_in_the_chain(monkeypatch) -> None:
+    effects = Effects(
+        braking=BrakingParameters(damping_Ns_per_m=20.0),
+        shading=ShadingParameters(crease_angle_deg=120.0),
+    )
+    scenes = make_both(monkeypatch, lambda: make_scene(effects=effects))
+    fed = sources(scenes[0][1])
+    assert fed["contact_query.shading"] == "force_shading.shading"
+    assert fed["pre_contact_braking.contact_chain"] == "contact_query.contact_chain"
+    one, other = (advance(*scene, 0.2) for scene in scenes)
+    # As with friction, above.
+    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9)
+    plain = advance(*make_both(monkeypatch, make_scene)[0], 0.2)
+    assert np.abs(one - plain).max() > 1e-3
 
 
 def make_held():
@@ -144,6 +161,5 @@ def test_a_deep_contact_is_warned_of_once_either_way(monkeypatch, make) -> None:
         assert "12 times contact.tolerance_m" in str(told[0].message)
 
 
-def test_what_reads_contacts_or_moves_them_leaves_the_chain_out() -> None:
-    assert not has_chain(make_scene(effects=Effects(braking=BrakingParameters()))[1])
+def test_an_object_that_moves_leaves_the_chain_out() -> None:
     assert not has_chain(make_scene(cart=True)[1])

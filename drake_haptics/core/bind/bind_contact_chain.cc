@@ -1,8 +1,10 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -40,9 +42,11 @@ class TrackedChain : public SceneTracker {
       : SceneTracker(other), chain_(other.CopyChain()) {}
 
   void SetLaw(double tolerance, std::optional<double> delta,
-              const ObjectFrames& objects, const ContactMaterials& materials) {
+              const ObjectFrames& objects, const ContactMaterials& materials,
+              std::shared_ptr<ContactShading> shading) {
     const Turn turn(&mutex_, Turn::Gil::kHold);
-    chain_.SetLaw({tolerance, delta, objects.frames, materials.materials});
+    chain_.SetLaw({tolerance, delta, objects.frames, materials.materials,
+                   std::move(shading)});
   }
 
   // A pose that is not a vector is queried as by any tracker.
@@ -104,6 +108,13 @@ class TrackedChain : public SceneTracker {
     }
     Refresh();
     return chain_.FindFriction(friction, state.data(), {q_WT, V_WT}, &tracker_);
+  }
+
+  WrenchModelVector FindBraking(const BrakingGains& gains,
+                                const PoseVector& q_WT, const Vec6& V_WT) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    return ToVector(chain_.FindBraking(gains, {q_WT, V_WT}, &tracker_));
   }
 
   // Returns the least distance, and the one below which contacts push, m.
@@ -183,13 +194,15 @@ void BindContactChain(nb::module_& m) {
            "Goes on from the state of a tracker, which stays as it is.")
       .def("set_law", &TrackedChain::SetLaw, nb::arg("tolerance"),
            nb::arg("delta").none(), nb::arg("objects"), nb::arg("materials"),
+           nb::arg("shading") = nb::none(),
            "Sets the law by which contacts push.\n\n"
            "Args:\n"
            "    tolerance: distance below which contacts push, m.\n"
            "    delta: size of the octree's cells, m; None lets contacts share "
            "stiffness.\n"
            "    objects: frames of the objects, which rest.\n"
-           "    materials: materials of the objects.")
+           "    materials: materials of the objects.\n"
+           "    shading: `ContactShading` of the normals; None for none.")
       .def("query", &TrackedChain::Query, nb::arg("X_WT").none(),
            nb::arg("tolerance") = nb::none(),
            nb::sig("def query(self, X_WT: "
@@ -228,6 +241,10 @@ void BindContactChain(nb::module_& m) {
            "    V_WT: (6,) its spatial velocity.\n\n"
            "Raises:\n"
            "    ValueError: a size does not match, or an object moves.")
+      .def("find_braking", &TrackedChain::FindBraking, nb::arg("gains"),
+           nb::arg("X_WT"), nb::arg("V_WT"),
+           "The wrench model (78,) of `pre_contact_braking` on the tool, whose "
+           "pose (7,) and spatial velocity (6,) are given.")
       .def_prop_ro("deepest", &TrackedChain::FindDeepest,
                    "Least distance of the contacts that were found last (m, "
                    "infinite without any), and the distance below which they "

@@ -54,19 +54,30 @@ const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
   return contacts_;
 }
 
+const std::vector<Contact>& ContactChain::Shade(const ContactTracker& tracker) {
+  if (law().shading == nullptr) return contacts_.contacts;
+  std::vector<Pose> X_WO;
+  for (int i = 0; i < tracker.num_objects(); ++i) {
+    X_WO.push_back(tracker.object_pose(i));
+  }
+  shaded_ = contacts_;
+  law().shading->Shade<double>(PoseFromVector(q_WT_, "X_WT"), X_WO, &shaded_);
+  return shaded_.contacts;
+}
+
 const WrenchModel& ContactChain::FindWrench(const ToolState& tool,
                                             ContactTracker* tracker) {
   const ContactLaw& law = this->law();
-  const ContactSet& found =
-      FindContacts(tool.q_WT, tracker->tolerance(), tracker);
+  FindContacts(tool.q_WT, tracker->tolerance(), tracker);
   if (has_wrench_ && IsSame(tool.V_WT, V_WT_)) {
     return wrench_.tool;
   }
   has_wrench_ = false;
+  const std::vector<Contact>& pushing = Shade(*tracker);
   if (law.delta.has_value()) {
-    ClusterContacts(found.contacts, *law.delta, law.tolerance, &clusters_);
+    ClusterContacts(pushing, *law.delta, law.tolerance, &clusters_);
   } else {
-    ShareStiffness(found.contacts, law.tolerance, &clusters_);
+    ShareStiffness(pushing, law.tolerance, &clusters_);
   }
   wrench_ = ComputePenaltyWrench(clusters_, {tool.q_WT.tail<3>(), tool.V_WT},
                                  law.objects, law.materials);
@@ -82,6 +93,16 @@ FrictionStep ContactChain::FindFriction(const StickSlipModel& friction,
   FindWrench(tool, tracker);
   return friction.Step<double>(state, clusters_.clusters,
                                wrench_.NormalForces(), tool.q_WT, nullptr);
+}
+
+WrenchModel ContactChain::FindBraking(const BrakingGains& gains,
+                                      const ToolState& tool,
+                                      ContactTracker* tracker) {
+  FindContacts(tool.q_WT, tracker->tolerance(), tracker);
+  return ComputeBraking<double>(contacts_.contacts,
+                                {tool.q_WT.tail<3>(), tool.V_WT}, law().objects,
+                                gains)
+      .tool;
 }
 
 }  // namespace drake_haptics

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/rotation.h"
+#include "law/braking.h"
 #include "law/clustering.h"
+#include "law/force_shading.h"
 #include "law/friction.h"
 #include "law/penalty_force.h"
 #include "tool/rigid_tool.h"
@@ -19,11 +22,13 @@ struct ContactLaw {
   std::optional<double> delta;
   std::vector<MovingFrame> objects;
   std::vector<ContactMaterial> materials;  ///< one for each object
+  /// Shading of the normals along which contacts push; null for none.
+  std::shared_ptr<const ContactShading> shading;
 };
 
 /// The chain from the tool's motion to the wrench of its contacts: query,
-/// clusters, penalty force. The chain keeps its last results and returns them
-/// again for the same arguments.
+/// shading, clusters, penalty force. The chain keeps its last results and
+/// returns them again for the same arguments.
 class ContactChain {
  public:
   void SetLaw(ContactLaw law);
@@ -36,7 +41,7 @@ class ContactChain {
   const ContactSet& FindContacts(const PoseVector& q_WT, double tolerance,
                                  ContactTracker* tracker);
 
-  /// Contacts that were found last.
+  /// Contacts that were found last, not shaded.
   const ContactSet& contacts() const { return contacts_; }
 
   /// Smallest distance of these contacts, m; infinite without any.
@@ -67,14 +72,24 @@ class ContactChain {
   FrictionStep FindFriction(const StickSlipModel& friction, const double* state,
                             const ToolState& tool, ContactTracker* tracker);
 
+  /// Returns the braking of the contacts, which are not shaded for it, on the
+  /// tool at To.
+  /// @throws as FindContacts and ComputeBraking; std::logic_error without a
+  ///         law.
+  WrenchModel FindBraking(const BrakingGains& gains, const ToolState& tool,
+                          ContactTracker* tracker);
+
  private:
   const ContactLaw& law() const;
+  // Returns the contacts with the normals along which they push.
+  const std::vector<Contact>& Shade(const ContactTracker& tracker);
 
   std::optional<ContactLaw> law_;
   bool has_contacts_ = false;  // for q_WT_ and tolerance_
   PoseVector q_WT_;
   double tolerance_ = 0;
   ContactSet contacts_;
+  ContactSet shaded_;
   bool has_wrench_ = false;  // for q_WT_ and V_WT_
   Vec6 V_WT_;
   ClusterSet clusters_;

@@ -60,6 +60,10 @@ class ContactTracker {
   /// @throws std::out_of_range, std::invalid_argument.
   void SetObjectPose(int i, const Pose& X_WO);
 
+  /// The pose of object i.
+  /// @throws std::out_of_range.
+  const Pose& object_pose(int i) const { return objects_.at(i).X_WO; }
+
   /// Writes the contacts at the tool's pose to `out`, reusing its memory.
   /// @throws std::invalid_argument for a pose that is not finite, before any
   ///         remembered state is touched; std::bad_alloc, after which nothing
