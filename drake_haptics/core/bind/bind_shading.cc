@@ -5,6 +5,7 @@
 
 #include "base/rotation.h"
 #include "bind/bind.h"
+#include "bind/bind_columns.h"
 #include "bind/bind_eigen.h"
 #include "bind/bind_pose.h"
 #include "law/autodiff_sets.h"
@@ -68,11 +69,14 @@ void BindShading(nb::module_& m) {
            "facets' own normals.\n\n"
            "Raises:\n"
            "    ValueError: crease_angle is not in [0, π].");
-  nb::class_<ContactShading>(
+  nb::class_<ContactShading> shading(
       m, "ContactShading",
       "Force shading of the contacts of a tool with objects (paper, 4.4.1; "
       "Morgenbesser and Srinivasan 1996): turns each normal to that of the "
-      "smooth surfaces that the meshes approximate, by at most 45°. Immutable.")
+      "smooth surfaces that the meshes approximate, by at most 45°. Immutable; "
+      "copies are the object itself.");
+  DefFrozenCopy(&shading);
+  shading
       .def(
           "__init__",
           [](ContactShading* self, const ShadingPtr& tool,
