@@ -1513,7 +1513,7 @@ class SurfaceShading:
 
 class ContactShading:
     """
-    Force shading of the contacts of a tool with objects (paper, 4.4.1; Morgenbesser and Srinivasan 1996): turns each normal to that of the smooth surfaces that the meshes approximate, by at most 45°. Immutable.
+    Force shading of the contacts of a tool with objects (paper, 4.4.1; Morgenbesser and Srinivasan 1996): turns each normal to that of the smooth surfaces that the meshes approximate, by at most 45°. Immutable; copies are the object itself.
     """
 
     def __init__(self, tool: SurfaceShading, objects: Sequence[SurfaceShading]) -> None:
@@ -1523,6 +1523,10 @@ class ContactShading:
         Raises:
             ValueError: an object is None.
         """
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
 
     @overload
     def shade(self, contacts: ContactSet, q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')]) -> ContactSet:
