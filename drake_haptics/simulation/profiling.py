@@ -50,8 +50,14 @@ _WHY = {
     "tick_log_sink": "a log: notes every tick",
     "haptic_visualizer": "draws the page or the recording",
 }
-# Systems whose work is one call of the core where nothing between them reads contacts.
-_CHAINED = ("haptic_tool", "contact_query", "contact_clustering", "penalty_force")
+# Systems whose work is one call of the core where no object moves.
+_CHAINED = (
+    "haptic_tool",
+    "contact_query",
+    "force_shading",
+    "contact_clustering",
+    "penalty_force",
+)
 CHAIN = "contact_chain"
 _CHAIN_WHY = "always: contacts, force and the tool's step, in one call"
 # For a system that this package does not know.
@@ -216,7 +222,8 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
 
     The time of a part is that of its Python code and of the core that this calls. The
     rest is Drake, which steps the arm's plant, calls the parts and passes values from
-    port to port, and the measurements of the run.
+    port to port, and the measurements of the run. If friction or braking reads the
+    contact chain, the first of them also finds the contacts for the others.
 
     Args:
         haptic: Diagram that was run.
@@ -244,6 +251,8 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
         if name in chained:
             taken = [one for one in systems if one.get_name() in chained]
             name, kind, why = CHAIN, "ContactChain", _CHAIN_WHY
+            if haptic.loop.effects.shading is not None:
+                why += ", with effects.shading"
         leaves = [leaf for one in taken for leaf in _list_leaves(one)]
         parts.append(
             make_part(name, kind, why, sum(own_s.get(leaf, 0.0) for leaf in leaves))

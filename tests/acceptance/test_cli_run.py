@@ -137,7 +137,7 @@ def test_explain_says_what_is_there_and_why_and_what_it_takes():
     assert "http" not in process.stderr
     parts = {part["name"]: part for part in figures["parts"]}
     assert {name for name, part in parts.items() if "effects." in part["why"]} == {
-        "force_shading",
+        "contact_chain",  # with shading
         "stick_slip_friction",
         "pre_contact_braking",
         "tool_gravity",
