@@ -9,7 +9,7 @@ import pytest
 from markdown_page import find_blocks, find_spans
 from pydrake.common.yaml import yaml_load
 
-from drake_haptics import Contact
+from drake_haptics import Contact, HapticRenderingConfig
 from drake_haptics.scene.device_preset import DevicePreset
 from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import SceneError
@@ -49,8 +49,10 @@ def find_schema(key):
 @pytest.mark.parametrize("text", BLOCKS)
 def test_parts_of_files_have_known_keys(text):
     data = yaml_load(data=text)
-    schema = DevicePreset if "model" in data else Scene
-    check_keys(schema, data)
+    # What no scene has tells the other kinds of files.
+    others = {"model": DevicePreset, "tool_body": HapticRenderingConfig}
+    found = [schema for key, schema in others.items() if key in data]
+    check_keys(*(found or [Scene]), data)
 
 
 @pytest.mark.parametrize("key", KEYS)
