@@ -110,7 +110,8 @@ def make_loops() -> str:
         f"{to_markdown([head, *rows])}\nAll rows have contact of the same convex"
         " pieces. In real time, each tick begins at its millisecond, as with a device;"
         " the other rows do not wait. Interruptions by the operating system are not"
-        " counted.\n"
+        " counted. [The machine](docs/benchmarks.md) is shared and noisy: read ratios,"
+        " not microseconds.\n"
     )
 
 

@@ -24,7 +24,7 @@ from drake_haptics.evaluation.benchmark.outside_library import load_library
 
 @click.command(cls=CommandWithExamples)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
-@click.option("--quick", is_flag=True, help="Measure less: about 40 seconds.")
+@click.option("--quick", is_flag=True, help="Measure less: about a minute.")
 @meshes_option("Take the scenes' meshes from here where it has them")
 @click.option(
     "--library",
