@@ -99,7 +99,10 @@ class HaplyService:
                 text, self.instead = self.instead, None
                 connection.send(self.describe() if text is None else text)
         except ConnectionClosed:
-            pass
+            # What arrived before the end is obeyed too, though nothing can answer it.
+            with contextlib.suppress(ConnectionClosed):
+                while True:
+                    self.obey(json.loads(connection.recv()))
 
     def expect_nothing(self, connection):
         """A client that has not had its answer has nothing to say; it is obeyed."""
