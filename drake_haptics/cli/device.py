@@ -55,8 +55,9 @@ from drake_haptics.loop.drivers import make_simulated_driver
     metavar="MS",
     default=100.0,
     show_default=True,
-    help="Longest life of a command; after it the force goes to zero and the"
-    " device is at fault.",
+    help="Upper limit of a command's life, at whose end the force goes to zero and the"
+    " device is at fault. The host chooses the life; `run` chooses 50 ms, so that only"
+    " a lower limit changes it.",
 )
 @click.option(
     "--duration",

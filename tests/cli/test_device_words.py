@@ -1,10 +1,12 @@
 """What a person reads of a device's state."""
 
 import dataclasses
+import inspect
 
 import pytest
 from fake_device import make_reading
 
+from drake_haptics.cli.device import device
 from drake_haptics.cli.status_line import (
     describe_device,
     describe_gate,
@@ -12,6 +14,7 @@ from drake_haptics.cli.status_line import (
     describe_link,
 )
 from drake_haptics.device.backend import Fault, GateState, LinkStatus
+from drake_haptics.device.udp_device import UdpDevice
 
 
 @pytest.mark.parametrize(
@@ -54,3 +57,10 @@ def test_faults_are_counted_by_name_and_a_link_only_where_there_is_one():
     assert describe_device(figures).startswith("1,000 readings, 0 lost, 0 refused; ")
     figures |= {"solved": 1, "solved_late": 1}
     assert describe_device(figures).endswith("; 1 of 1 contact step of its servo late")
+
+
+def test_the_help_says_which_life_a_run_chooses_below_the_limit_of_the_driver():
+    life_s = inspect.signature(UdpDevice).parameters["ttl_s"].default
+    (option,) = [o for o in device.params if o.name == "ttl_ms"]
+    assert f"`run` chooses {1e3 * life_s:g} ms" in option.help
+    assert option.default > 1e3 * life_s
