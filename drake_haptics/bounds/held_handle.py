@@ -41,7 +41,8 @@ def check_real_coupling(scene: Scene) -> list[str]:
 
     The coupling is compared with the device's ratings and, if the preset has a model,
     with the bounds on its twin. How firmly a real device is held is unknown, so the
-    bounds are those in the loosest grip.
+    bounds are those in the loosest grip. The delay of the link is the scene's
+    `device.twin.delay`; the sentences say so if none is given.
 
     Returns:
         A sentence for each rating that is exceeded, then those of
@@ -61,11 +62,16 @@ def find_real_bounds(
     """Returns the bounds that a coupling breaks on a real device."""
     found = find_exceeded_ratings(scene.coupling, preset)
     if loosely_held is not None:
-        period_s = scene.device.wrench_period_s
+        period_s, delay_s = scene.device.wrench_period_s, calc_force_delay(scene)
+        link = f"with a delay of {1e3 * delay_s:g} ms"
+        if delay_s == 0.0:
+            link = "assuming no delay, because device.twin.delay is not given"
         found += [
-            replace(bound, sentence=f"{bound.sentence} (in a {LOOSEST_GRIP} grip)")
+            replace(
+                bound, sentence=f"{bound.sentence} (in a {LOOSEST_GRIP} grip, {link})"
+            )
             for bound in find_broken_bounds(
-                scene.coupling, loosely_held, period_s, calc_force_delay(scene)
+                scene.coupling, loosely_held, period_s, delay_s
             )
         ]
     return found
@@ -100,7 +106,7 @@ def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
 
 
 def calc_force_delay(scene: Scene) -> float:
-    """Returns the delay with which a scene's simulated device shows a wrench, s.
+    """Returns the delay with which a scene's device shows a wrench, s.
 
     That is the delay t_d on top of the hold in the laws of stability.
     """

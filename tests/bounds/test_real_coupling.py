@@ -82,7 +82,10 @@ def test_the_twin_is_held_in_the_loosest_grip_whatever_the_scene_names(tmp_path)
         scene.hand.grip = grip
         (sentence,) = build(scene)
         assert sentence.startswith("coupling.damping_Ns_per_m is 2: not passive")
-        assert "(in a light grip)" in sentence
+        assert sentence.endswith(
+            "(in a light grip, assuming no delay, because device.twin.delay is not"
+            " given)"
+        )
     # The hand's 1 N·s/m and some of the arm's bear 0.9: 0.5 + 800 / 2000.
     scene.coupling.damping_Ns_per_m = 0.5
     assert build(scene) == []
@@ -90,6 +93,7 @@ def test_the_twin_is_held_in_the_loosest_grip_whatever_the_scene_names(tmp_path)
     scene.device.twin.delay = ForceDelayParameters(samples=1)
     (sentence,) = build(scene)
     assert "Colgate" in sentence
+    assert sentence.endswith("(in a light grip, with a delay of 1 ms)")
 
 
 def test_a_path_that_the_device_need_not_follow_hides_no_warning(tmp_path):
