@@ -78,14 +78,19 @@ def show_table(table: Table, *, folds: bool = False) -> RichTable:
     return shown
 
 
-def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
+def describe_page(
+    url: str, parts: Sequence[str] = (), *, wished_port: int | None = None
+) -> list[str]:
     """Returns lines that say where to open a page, and how over ssh.
 
     Args:
         url: Address of the page.
         parts: Further addresses that the page needs, each with its own port.
+        wished_port: Port that the page would have if it were free. Defaults to its own.
     """
     lines = [f"Open {url} to see it."]
+    if wished_port not in (None, urlsplit(url).port):
+        lines[0] += f" Port {wished_port} is taken by another run or program."
     if connection := os.environ.get("SSH_CONNECTION"):
         # Client's address and port, then the server's.
         host = connection.split()[2:3] or ["THIS_COMPUTER"]

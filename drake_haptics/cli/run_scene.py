@@ -34,7 +34,7 @@ from drake_haptics.visualization.meshcat import (
     start_meshcat,
     write_recording,
 )
-from drake_haptics.web.link import open_page_port
+from drake_haptics.web.link import FIRST_PORT, open_page_port
 
 
 def make_parts_table(parts: Sequence[Part]) -> Table:
@@ -158,7 +158,7 @@ def run_scene(
             meshcat=meshcat,
             page=page,
             prepare=lambda haptic, url: _prepare(
-                console, haptic, meshcat, url, pieces, record
+                console, haptic, meshcat, url, port, pieces, record
             ),
             duration_s=duration_s,
             energy=json_file is not None,
@@ -220,6 +220,7 @@ def _prepare(
     haptic: HapticDiagram,
     meshcat: Meshcat | None,
     url: str | None,
+    port: int | None,
     pieces: bool,
     record: Path | None,
 ) -> None:
@@ -233,7 +234,7 @@ def _prepare(
         visualizer.StartRecording()
     if url is not None:
         picture = [] if meshcat is None else [meshcat.web_url()]
-        for line in describe_page(url, picture):
+        for line in describe_page(url, picture, wished_port=port or FIRST_PORT):
             console.print(line, soft_wrap=True, markup=False)
         console.print("Ctrl-C ends the run.", style="dim")
 

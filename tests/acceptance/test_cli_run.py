@@ -1,5 +1,6 @@
 """`drake-haptics run` and `scenes` from end to end."""
 
+import contextlib
 import json
 import os
 import re
@@ -173,6 +174,16 @@ def test_a_coupling_that_breaks_a_bound_is_warned_of_in_a_line(tmp_path):
     (line,) = [x for x in result.stderr.splitlines() if x.startswith("Warning: ")]
     assert "coupling.damping_Ns_per_m is 2: not passive" in line
     assert "Colgate" in line and "SceneWarning" not in result.output
+
+
+def test_a_port_that_another_program_has_is_named_with_the_address():
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):  # Somebody else has it.
+            stack.enter_context(socket.create_server(("127.0.0.1", 7100)))
+        result = invoke("run", "sphere_pen", "--duration", 0.05)
+    assert result.exit_code == 0, result.output
+    (line,) = [x for x in result.stdout.splitlines() if x.startswith("Open ")]
+    assert "localhost:71" in line and "Port 7100 is taken" in line
 
 
 def test_json_to_stdout_is_alone():

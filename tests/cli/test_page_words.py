@@ -1,5 +1,7 @@
 """What is said of a page: where it is, and how to get there over ssh."""
 
+import pytest
+
 from drake_haptics.cli.console import describe_page
 
 
@@ -8,6 +10,13 @@ def test_at_the_computer_it_is_one_line(monkeypatch):
     assert describe_page("http://localhost:7100/") == [
         "Open http://localhost:7100/ to see it."
     ]
+
+
+@pytest.mark.parametrize("port", [7100, 7102])
+def test_a_port_that_another_program_has_is_named(monkeypatch, port):
+    monkeypatch.delenv("SSH_CONNECTION", raising=False)
+    (line,) = describe_page(f"http://localhost:{port}/", wished_port=7100)
+    assert ("Port 7100 is taken" in line) == (port != 7100)
 
 
 def test_over_ssh_all_ports_are_brought_to_the_other_end(monkeypatch):
