@@ -9,10 +9,12 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from multiprocessing import resource_tracker
 from typing import Any
 
 from joblib.externals.loky import ProcessPoolExecutor, cpu_count
+from joblib.externals.loky.backend.utils import kill_process_tree
 
 # Period at which a worker checks that its parent process still runs, s.
 _LOOK_PERIOD_S = 0.5
@@ -36,6 +38,26 @@ class SerialExecutor(Executor):
         return future
 
 
+class _DeafPool(ProcessPoolExecutor):
+    """A pool whose processes never hear Ctrl-C, not even while Python starts in them.
+
+    `submit` starts processes, and the thread that replaces them. Both inherit that the
+    signal is blocked.
+    """
+
+    def submit(
+        self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> Future[Any]:
+        """Submits a call."""
+        # Otherwise the first process starts it, which unblocks the signal.
+        resource_tracker.ensure_running()
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 @contextmanager
 def local_processes(most_useful: int) -> Iterator[Executor]:
     """Opens a pool of new processes, one for each core that this process may use.
@@ -44,7 +66,7 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
     soon after this process dies, however it dies, and at once if an exception leaves
     the context; Ctrl-C in a terminal is left to this process.
     """
-    pool = ProcessPoolExecutor(
+    pool = _DeafPool(
         min(cpu_count(), most_useful),
         initializer=_start_worker,
         initargs=(os.getpid(),),
@@ -56,7 +78,12 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
         try:
             yield pool
         except BaseException:
-            pool.shutdown(kill_workers=True)  # nobody waits for their tasks
+            # Nobody waits for their tasks. With `kill_workers`, Loky may end in a
+            # KeyError and leave the workers.
+            for worker in list(pool._processes.values()):
+                with suppress(ProcessLookupError):
+                    kill_process_tree(worker)
+            pool.shutdown()
             raise
         pool.shutdown()
 
@@ -70,8 +97,7 @@ def explain_broken_pool() -> str:
 
 
 def _start_worker(parent: int) -> None:
-    """Leaves Ctrl-C to the parent process, and makes this one end soon after it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Makes this process end soon after its parent."""
 
     def look() -> None:
         while os.getppid() == parent:

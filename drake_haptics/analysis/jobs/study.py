@@ -237,13 +237,11 @@ class _Study:
         pending = [key for key in self._distinct if key not in self._results]
         if not pending:
             return
-        chunks = -(-len(pending) // chunk_size)
         with (
             # The threads of an executor share the BLAS of this process: if each limited
             # it for its chunk, the first to end would lift the limit for the others.
             one_blas_thread(),
-            _open_executor(executor, chunks) as workers,
-            closing(_compute(workers, self._function, pending, chunk_size)) as done,
+            closing(_compute(executor, self._function, pending, chunk_size)) as done,
         ):
             for key, outcome in done:
                 self._keep(key, outcome)
@@ -284,24 +282,28 @@ class _Study:
 
 
 def _compute(
-    executor: Executor,
+    executor: Executor | None,
     function: Callable[[Any], Any],
-    pending: Iterable[str],
+    pending: Sequence[str],
     chunk_size: int,
 ) -> Generator[tuple[str, Outcome], None, None]:
-    """Yields tasks with their outcomes as they finish; cancels the rest when closed."""
+    """Yields tasks with their outcomes as they finish; cancels the rest when closed.
+
+    A pool that it has opened ends first, because Loky's cannot end with canceled tasks.
+    """
     finished: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
     in_flight: dict[Future[list[Outcome]], list[str]] = {}
     rest = iter(pending)
     try:
-        while chunk := list(islice(rest, chunk_size)):
-            future = executor.submit(StudyChunk(function, chunk))
-            in_flight[future] = chunk
-            future.add_done_callback(finished.put)
-            while len(in_flight) >= _IN_FLIGHT or not finished.empty():
+        with _open_executor(executor, -(-len(pending) // chunk_size)) as workers:
+            while chunk := list(islice(rest, chunk_size)):
+                future = workers.submit(StudyChunk(function, chunk))
+                in_flight[future] = chunk
+                future.add_done_callback(finished.put)
+                while len(in_flight) >= _IN_FLIGHT or not finished.empty():
+                    yield from _take(in_flight, finished.get())
+            while in_flight:
                 yield from _take(in_flight, finished.get())
-        while in_flight:
-            yield from _take(in_flight, finished.get())
     except BrokenExecutor:
         for future in [f for f in in_flight if f.done() and f.exception() is None]:
             yield from _take(in_flight, future)

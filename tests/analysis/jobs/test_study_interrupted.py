@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -81,6 +82,16 @@ def find_living(group: int) -> set[int]:
     return {pid for pid in map(int, members) if lives(pid)}
 
 
+def is_python_up_in_a_worker(group: int) -> bool:
+    """Whether Python has set its handler of Ctrl-C in the newest process of a study."""
+    pids = find_living(group)
+    if len(pids) <= 3:  # The program and two trackers of resources.
+        return False
+    status = Path(f"/proc/{max(pids)}/status").read_text()
+    caught = int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16)
+    return bool(caught & 1 << signal.SIGINT - 1)
+
+
 def count_lines(path: Path) -> int:
     return path.read_bytes().count(b"\n") if path.exists() else 0
 
@@ -115,6 +126,21 @@ def test_a_study_that_was_killed_goes_on_where_it_was(start, tmp_path, how):
     results = run_study(journal, rest, executor=SERIAL, store=store)
     assert [task for task, _ in results] == rest
     assert journal.read()[before:] == [task for task in rest if task not in kept]
+
+
+@pytest.mark.parametrize("when", ["as workers start", "as they compute"])
+def test_ctrl_c_ends_a_long_study_with_nothing_but_its_message(start, tmp_path, when):
+    journal = Journal(str(tmp_path / "journal"), 0.02)
+    driver = start(PROGRAM, journal.path, tmp_path / "store", *range(2000))
+    if when == "as workers start":
+        wait_until(lambda: is_python_up_in_a_worker(driver.pid))
+    else:
+        wait_until(journal.read)
+    os.killpg(driver.pid, signal.SIGINT)
+    _, stderr = driver.communicate(timeout=60)
+    assert stderr.count("Traceback") == 1, stderr
+    assert re.search(r"KeyboardInterrupt: Stopped. \d+ of 2000 tasks are done", stderr)
+    wait_until(lambda: not find_living(driver.pid))
 
 
 def test_a_program_without_a_guard_runs_once(start, tmp_path):
