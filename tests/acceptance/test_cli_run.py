@@ -1,6 +1,5 @@
 """`drake-haptics run` and `scenes` from end to end."""
 
-import contextlib
 import json
 import os
 import re
@@ -14,10 +13,11 @@ import websocket
 from command_line import COMMAND, call, invoke
 from shapes import SHAPES
 
-from drake_haptics.cli import run_session
+from drake_haptics.cli import run_scene, run_session
 from drake_haptics.scene.library import list_scenes
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.web import link
 
 SCENES = [
     "can_box",
@@ -176,14 +176,15 @@ def test_a_coupling_that_breaks_a_bound_is_warned_of_in_a_line(tmp_path):
     assert "Colgate" in line and "SceneWarning" not in result.output
 
 
-def test_a_port_that_another_program_has_is_named_with_the_address():
-    with contextlib.ExitStack() as stack:
-        with contextlib.suppress(OSError):  # Somebody else has it.
-            stack.enter_context(socket.create_server(("127.0.0.1", 7100)))
+def test_a_port_that_another_program_has_is_named_with_the_address(monkeypatch):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        for module in (link, run_scene):
+            monkeypatch.setattr(module, "FIRST_PORT", port)
         result = invoke("run", "sphere_pen", "--duration", 0.05)
     assert result.exit_code == 0, result.output
     (line,) = [x for x in result.stdout.splitlines() if x.startswith("Open ")]
-    assert "localhost:71" in line and "Port 7100 is taken" in line
+    assert f"Port {port} is taken" in line and f"localhost:{port}/" not in line
 
 
 def test_json_to_stdout_is_alone():

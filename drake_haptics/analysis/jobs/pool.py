@@ -38,8 +38,8 @@ class SerialExecutor(Executor):
         return future
 
 
-class _DeafPool(ProcessPoolExecutor):
-    """A pool whose processes never hear Ctrl-C, not even while Python starts in them.
+class _UninterruptedPool(ProcessPoolExecutor):
+    """A pool whose processes Ctrl-C does not reach, not even while Python starts there.
 
     `submit` starts processes, and the thread that replaces them. Both inherit that the
     signal is blocked.
@@ -66,7 +66,7 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
     soon after this process dies, however it dies, and at once if an exception leaves
     the context; Ctrl-C in a terminal is left to this process.
     """
-    pool = _DeafPool(
+    pool = _UninterruptedPool(
         min(cpu_count(), most_useful),
         initializer=_start_worker,
         initargs=(os.getpid(),),
