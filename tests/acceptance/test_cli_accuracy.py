@@ -221,7 +221,6 @@ def test_options_that_do_not_go_together(invoke, arguments, words):
     ("error", "code", "words"),
     [
         (KeyboardInterrupt(), 130, "Stopped."),
-        (KeyboardInterrupt("Stopped. 3 of 9 are kept in s"), 130, "Stopped. 3 of 9"),
         (RunError("stopped at 0.1 s: it diverged", None), 1, "Error: stopped at 0.1 s"),
     ],
 )

@@ -34,13 +34,6 @@ def log(tmp_path_factory):
     return path
 
 
-def test_the_commands_are_listed():
-    assert "Inspect, replay, compare" in invoke("--help").output
-    output = invoke("log", "--help").output
-    for name in ("info", "replay", "diff", "csv"):
-        assert f"  {name} " in output
-
-
 def test_info_says_what_is_in_it(log):
     output = invoke("log", "info", log).output
     assert "1500, 1.500 s at 1000 Hz" in output

@@ -8,9 +8,8 @@ from pathlib import Path
 import command_line
 import pytest
 from command_line import call
-from held_samples import analyze_sample, skip_search
+from held_samples import analyze_sample
 
-from drake_haptics.analysis import scene_stability
 from drake_haptics.cli import stability as command
 from drake_haptics.simulation.run import RunError
 
@@ -120,7 +119,6 @@ def test_a_value_that_cannot_be_is_a_wrong_call(invoke, arguments, words):
     ("error", "code", "words"),
     [
         (KeyboardInterrupt(), 130, "Stopped."),
-        (KeyboardInterrupt("Stopped. 3 of 9 tasks are kept"), 130, "Stopped. 3 of 9"),
         (RunError("stopped at 0.1 s: it diverged", None), 1, "Error: stopped at 0.1 s"),
         (ValueError("the tool does not come to rest"), 1, "Error: the tool does not"),
     ],
@@ -136,22 +134,7 @@ def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, code, wor
     assert line.startswith(words)
 
 
-def test_a_store_keeps_the_map_for_the_next_time(invoke, monkeypatch, tmp_path):
-    monkeypatch.setattr(scene_stability, "find_stiffness_limits", skip_search)
-    arguments = ["hammer_block", "--at", 1.736, "--map", 3, "--store", "map.jsonl"]
-    first = invoke(*arguments, "--json", "first.json")
-    assert first.exit_code == 0, first.output
-    kept = Path("map.jsonl").read_bytes()
-    # Nothing is computed the second time: a worker would find no such scene.
-    monkeypatch.setattr(
-        scene_stability.CouplingGrowth, "__call__", lambda *_: pytest.fail("computed")
-    )
-    second = invoke(*arguments, "--json", "second.json")
-    assert second.exit_code == 0, second.output
-    assert Path("map.jsonl").read_bytes() == kept
-    maps = [
-        json.loads(Path(name).read_text())["map"]
-        for name in ("first.json", "second.json")
-    ]
-    assert maps[0] == maps[1]
-    assert len(maps[0]["stiffness"]) == 3
+def test_a_store_is_that_of_the_map(invoke, sample):
+    """What it keeps: analysis/test_scene_stability.py."""
+    assert invoke("hammer_block", "--store", "map.jsonl").exit_code == 0
+    assert sample[0][2]["store"] == Path("map.jsonl")

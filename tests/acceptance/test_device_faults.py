@@ -120,8 +120,7 @@ def test_a_cut_network_leaves_no_force(link, host):
     assert link.wait_for(is_stale).force_N == 0.0
 
 
-@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
-@pytest.mark.parametrize("axis", [0, 5])
+@pytest.mark.parametrize(("number", "axis"), [(math.nan, 0), (-math.inf, 5)])
 def test_a_command_that_is_no_number_ends_force_at_once(link, host, number, axis):
     host.enable(3.0)
     wrench = [0.0] * 6
