@@ -4,20 +4,16 @@ import numpy as np
 import pytest
 from coupled_device import add_device_on_fixed_tool
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import AffineSystem, LogVectorOutput
+from twin_rig import PERIOD, X_WH, make_arm, make_simulator
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
-from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.hand_path import HandPath
-from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.framework.differentiable_system import export_parts
 from drake_haptics.systems.tool.passivity_control import PassivityControl
 
-PERIOD = 1e-3
 MASS, DAMPING, SPEED = 0.1, 0.5, 0.1
 LIMIT = calc_stable_stiffness(DAMPING, 0.0, PERIOD)
 IN_X = np.eye(6)[3]
@@ -68,9 +64,7 @@ def run(backend, gains, X_WT, control, duration_s):
     if control is not None:
         ports.append(control.GetOutputPort("energy_J"))
     logs = [LogVectorOutput(port, builder, PERIOD) for port in ports]
-    simulator = Simulator(builder.Build())
-    ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD)
-    simulator.get_mutable_integrator().set_fixed_step_mode(True)
+    simulator = make_simulator(builder.Build())
     simulator.AdvanceTo(duration_s)
     return [log.FindLog(simulator.get_context()).data() for log in logs]
 
@@ -120,21 +114,10 @@ def test_an_arm_without_a_hand_comes_to_rest(place, factor):
     """In six axes: a coupling that is too stiff for the free simulated arm."""
     gains = [800.0, 2.0, 1.0, 0.004]
     gains[place] = factor * calc_stable_stiffness(0.0, gains[place + 1], PERIOD)
-    preset = load_device_preset("phantom_premium_1_5_6dof")
-    X_WH = RigidTransform(preset.workspace_center_m)
     X_WT = X_WH @ RigidTransform(RollPitchYaw(1e-4, 2e-4, 3e-4), [1e-5, 2e-5, 3e-5])
 
     def calc_growth(control):
-        arm = SimulatedArm(
-            preset.model_path,
-            preset.handle_link,
-            RigidTransform(),
-            HandPath([0.0], [X_WH]),
-            RigidTransform(),
-            None,
-        )
-        arm.set_name("arm")
-        V_WH = run(arm, CouplingGains(*gains), X_WT, control, 1.0)[1]
+        V_WH = run(make_arm(), CouplingGains(*gains), X_WT, control, 1.0)[1]
         speed = np.linalg.norm(V_WH, axis=0)
         return speed[-200:].max() / speed[200:400].max()
 
