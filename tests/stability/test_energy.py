@@ -41,8 +41,12 @@ def assert_nothing_is_created(books):
 @pytest.mark.parametrize("path", PATHS)
 def test_a_ball_on_a_plate(tmp_path, path, grip):
     books = energies(over_a_plate(tmp_path, PATHS[path], tool="ball", grip=grip))
-    assert books["contact"]["in"] > 1e-5
+    contact = books["contact"]
+    assert contact["in"] > 1e-5
     assert_nothing_is_created(books)
+    if path == "tap":
+        # The plate is met within a tick, and has stored energy before it was felt.
+        assert 0.3 * contact["bound"] < contact["created"] < contact["bound"]
 
 
 @pytest.mark.parametrize("path", ["press", "tap"])
@@ -63,12 +67,6 @@ def test_effects_that_only_take_or_store(tmp_path, path):
     books = energies(scene)
     assert books["braking"]["damped"] > 0.0
     assert_nothing_is_created(books)
-
-
-def test_a_tap_reaches_a_good_share_of_its_bound(tmp_path):
-    """The plate is met within a tick, and has stored energy before it was felt."""
-    contact = energies(over_a_plate(tmp_path, PATHS["tap"], tool="ball"))["contact"]
-    assert 0.3 * contact["bound"] < contact["created"] < contact["bound"]
 
 
 def test_spoon_and_cup_at_rest_make_and_take_nothing():
