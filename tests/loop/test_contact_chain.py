@@ -39,8 +39,8 @@ _TICK = 1e-3
 _SCENES = {"cup_spoon": 0.7, "torus_peg": 0.8, "sphere_pen": 0.6}
 
 
-def build(scene: Scene, monkeypatch: pytest.MonkeyPatch, chained: bool, device=None):
-    with monkeypatch.context() as patch:
+def build(scene: Scene, chained: bool, device=None):
+    with pytest.MonkeyPatch.context() as patch:
         if not chained:
             patch.setattr(add_haptic_loop, "can_chain", lambda *_: False)
         haptic = BuildHapticDiagram(scene, device=device)
@@ -48,18 +48,18 @@ def build(scene: Scene, monkeypatch: pytest.MonkeyPatch, chained: bool, device=N
     return haptic
 
 
-@pytest.fixture(params=_SCENES)
-def pair(request, monkeypatch: pytest.MonkeyPatch):
+@pytest.fixture(scope="module", params=_SCENES)
+def pair(request):
     """A scene both ways, and when it is in contact, s."""
     scene = load_scene(find_scene(request.param))
-    both = [build(scene, monkeypatch, chained) for chained in (True, False)]
+    both = [build(scene, chained) for chained in (True, False)]
     return *both, _SCENES[request.param]
 
 
-def cup(monkeypatch: pytest.MonkeyPatch, change: Callable[[Scene], None] = id):
+def cup(change: Callable[[Scene], None] = id):
     scene = load_scene(find_scene("cup_spoon"))
     change(scene)
-    return [build(scene, monkeypatch, chained) for chained in (True, False)]
+    return [build(scene, chained) for chained in (True, False)]
 
 
 def add_friction(scene: Scene) -> None:
@@ -126,10 +126,7 @@ def test_the_tool_moves_bit_by_bit_as_by_the_ports_of_its_wrenches(pair) -> None
     states = run(chained, contact_s + 0.1)
     assert_same(states, run(separate, contact_s + 0.1))
     assert max(np.abs(state[-3:]).max() for state in states) > 0.1
-
-
-def test_what_is_between_is_the_same_and_reading_it_changes_nothing(pair) -> None:
-    chained, separate, contact_s = pair
+    # What is between is the same, and reading it changes nothing.
     between = run(chained, contact_s + 0.1, read_between)
     assert_same(between, run(separate, contact_s + 0.1, read_between))
     assert len(between[-1]) > len(between[0])
@@ -139,7 +136,7 @@ def test_what_is_between_is_the_same_and_reading_it_changes_nothing(pair) -> Non
         read.append(read_between(haptic, root))
         return read_state(haptic, root)
 
-    assert_same(run(chained, contact_s + 0.1, read_both), run(chained, contact_s + 0.1))
+    assert_same(run(chained, contact_s + 0.1, read_both), states)
 
 
 def test_a_run_counts_the_same_contacts_and_clusters(pair) -> None:
@@ -152,11 +149,9 @@ def test_a_run_counts_the_same_contacts_and_clusters(pair) -> None:
     assert one["clusters"]["max"] > 0
 
 
-def test_a_query_that_a_step_has_made_is_not_made_again(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_query_that_a_step_has_made_is_not_made_again() -> None:
     """What a query took is that of the query itself, and never twice the same."""
-    chained, _ = cup(monkeypatch)
+    chained, _ = cup()
     simulator = make_simulator(chained)
     simulator.AdvanceTo(0.7 + 0.5 * _TICK)
     root = simulator.get_mutable_context()
@@ -206,11 +201,9 @@ def test_a_tool_that_is_put_back_mid_run_goes_on_alike(pair) -> None:
     assert_same(*ends)
 
 
-def test_gains_rule_and_tolerance_that_change_mid_run_count_at_once(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_gains_rule_and_tolerance_that_change_mid_run_count_at_once() -> None:
     ends = []
-    for haptic in cup(monkeypatch):
+    for haptic in cup():
         simulator = make_simulator(haptic)
         simulator.AdvanceTo(0.7 + 0.5 * _TICK)
         root = simulator.get_mutable_context()
@@ -247,21 +240,19 @@ def test_gains_rule_and_tolerance_that_change_mid_run_count_at_once(
     assert np.abs(steps).max(axis=1).min() > 1e-3
 
 
-def test_other_wrenches_count_beside_the_chain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_wrenches_count_beside_the_chain() -> None:
     def add_gravity(scene: Scene) -> None:
         scene.effects.gravity = GravityParameters()
 
-    chained, separate = cup(monkeypatch, add_gravity)
+    chained, separate = cup(add_gravity)
     heavy = run(chained, 0.75)
     assert_same(heavy, run(separate, 0.75))
-    weightless = run(cup(monkeypatch)[0], 0.75)
+    weightless = run(cup()[0], 0.75)
     assert np.abs(heavy[-1] - weightless[-1]).max() > 1e-6
 
 
-def test_friction_is_found_from_the_chain_bit_by_bit(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    chained, separate = cup(monkeypatch, add_friction)
+def test_friction_is_found_from_the_chain_bit_by_bit() -> None:
+    chained, separate = cup(add_friction)
     assert chained.loop.effects.friction.HasInputPort("contact_chain")
     assert not separate.loop.effects.friction.HasInputPort("contact_chain")
 
@@ -273,17 +264,15 @@ def test_friction_is_found_from_the_chain_bit_by_bit(
 
     rough = run(chained, 0.9, read_friction)
     assert_same(rough, run(separate, 0.9, read_friction))
-    slippery = run(cup(monkeypatch)[0], 0.9)
+    slippery = run(cup()[0], 0.9)
     assert np.abs(rough[-1][-19:] - slippery[-1]).max() > 1e-3
     # Reading what is between changes nothing, and is the same.
     between = run(chained, 0.9, read_between)
     assert_same(between, run(separate, 0.9, read_between))
 
 
-def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    chained, _ = cup(monkeypatch)
+def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain() -> None:
+    chained, _ = cup()
     simulator = make_simulator(chained)
     simulator.AdvanceTo(0.7 + 0.5 * _TICK)
     root, loop = simulator.get_context(), chained.loop
@@ -309,22 +298,24 @@ def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain(
     np.testing.assert_array_equal(found, expected)
 
 
-@pytest.mark.parametrize("clustering", ["shared", "octree"])
+SHADING = ShadingParameters(crease_angle_deg=60.0)
+ALL = Effects(
+    shading=SHADING, braking=BrakingParameters(), friction=FrictionParameters()
+)
+
+
 @pytest.mark.parametrize(
-    "effects",
+    ("clustering", "effects"),
     [
-        Effects(shading=ShadingParameters(crease_angle_deg=60.0)),
-        Effects(braking=BrakingParameters()),
-        Effects(
-            shading=ShadingParameters(crease_angle_deg=60.0),
-            braking=BrakingParameters(),
-            friction=FrictionParameters(),
-        ),
+        ("shared", Effects(shading=SHADING)),
+        ("shared", Effects(braking=BrakingParameters())),
+        ("shared", ALL),
+        ("octree", ALL),
     ],
-    ids=["shading", "braking", "all"],
+    ids=["shading", "braking", "all", "octree"],
 )
 def test_effects_that_read_contacts_find_them_in_the_chain_bit_by_bit(
-    monkeypatch: pytest.MonkeyPatch, effects: Effects, clustering: str
+    effects: Effects, clustering: str
 ) -> None:
     def cluster(scene: Scene) -> None:
         scene.contact.clustering = clustering
@@ -334,10 +325,10 @@ def test_effects_that_read_contacts_find_them_in_the_chain_bit_by_bit(
         cluster(scene)
         scene.effects = effects
 
-    chained, separate = cup(monkeypatch, add_effects)
+    chained, separate = cup(add_effects)
     felt = run(chained, 0.9)
     assert_same(felt, run(separate, 0.9))
-    plain = run(cup(monkeypatch, cluster)[0], 0.9)
+    plain = run(cup(cluster)[0], 0.9)
     assert np.abs(felt[-1] - plain[-1]).max() > 1e-4
     # Reading what is between changes nothing, and is the same.
     between = run(chained, 0.9, read_between)
@@ -345,16 +336,14 @@ def test_effects_that_read_contacts_find_them_in_the_chain_bit_by_bit(
 
 
 @pytest.mark.filterwarnings(f"ignore::{SceneWarning.__module__}.SceneWarning")
-def test_a_device_is_told_the_same_wrench_and_slopes(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_device_is_told_the_same_wrench_and_slopes() -> None:
     told = []
     for chained in (True, False):
         scene = load_scene(find_scene("cup_spoon"))
         device = ScriptedDevice(
             lambda k: make_reading(k, position=(-4e-5 * k, 0.0, -2e-5 * k))
         )
-        haptic = build(scene, monkeypatch, chained, device)
+        haptic = build(scene, chained, device)
         device.reads = 0
         Simulator(haptic.diagram).AdvanceTo(0.9)
         told.append(
@@ -370,10 +359,10 @@ def test_a_device_is_told_the_same_wrench_and_slopes(
 
 @pytest.mark.parametrize("change", [id, add_friction])
 def test_the_twin_has_the_derivatives_of_the_separate_chain(
-    monkeypatch: pytest.MonkeyPatch, change: Callable[[Scene], None]
+    change: Callable[[Scene], None],
 ) -> None:
     found = []
-    for haptic in cup(monkeypatch, change):
+    for haptic in cup(change):
         simulator = make_simulator(haptic)
         simulator.AdvanceTo(0.7 + 0.5 * _TICK)
         context = simulator.get_context()
@@ -387,9 +376,9 @@ def test_the_twin_has_the_derivatives_of_the_separate_chain(
     assert np.abs(found[0][0]).max() > 1.0
 
 
-def test_a_chain_knows_what_its_tracker_knew(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chain_knows_what_its_tracker_knew() -> None:
     """Where a diagram is made of another, the one with the chain, the other without."""
-    chained, separate = cup(monkeypatch)
+    chained, separate = cup()
     simulator = make_simulator(separate)
     simulator.AdvanceTo(0.7 + 0.5 * _TICK)
     old = separate.loop.contact_query
