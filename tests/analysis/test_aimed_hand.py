@@ -53,7 +53,8 @@ def test_any_gains_hold_the_tool_where_it_was(held, gains):
     assert_rests_as_held(held, haptic, context)
 
 
-@pytest.mark.parametrize("grip", ["light", "nominal", "firm"])
+# A firm one is the scenes' own.
+@pytest.mark.parametrize("grip", ["light", "nominal"])
 def test_any_hand_holds_the_tool_where_it_was(held, grip):
     other = hold_with_grip(held, grip)
     assert_rests_as_held(other, *build_with_same_load(other))

@@ -30,9 +30,8 @@ OF_EFFECT = {
     "gravity": "tool_gravity",
     "passivity": "passivity_control",
 }
-SUBSETS = [
-    subset for n in range(len(EVERY) + 1) for subset in combinations(sorted(EVERY), n)
-]
+# Each by itself, and each missing.
+SUBSETS = [subset for n in (0, 1, 4, 5) for subset in combinations(sorted(EVERY), n)]
 START = (0.0, 0.0, 0.0, 0.05)
 SOURCE_OF_FORCE = {
     "coupling": "virtual_coupling.wrench_model",

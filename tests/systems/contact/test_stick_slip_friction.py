@@ -264,7 +264,7 @@ def empty_slots(state):
     return np.concatenate([slots, (empty[:, None] + np.arange(1, SLOT_SIZE)).ravel()])
 
 
-@pytest.mark.parametrize("seed", [1, 3, 4])
+@pytest.mark.parametrize("seed", [1, 4])
 @pytest.mark.parametrize(
     ("way", "slides", "grips"),
     [(3e-5, False, True), (1.6e-4, True, True), (6e-4, True, False)],
