@@ -1,6 +1,7 @@
 """What is timed and counted is what the loop does, and in fair turns."""
 
 import shutil
+from functools import cache
 
 import numpy as np
 import pytest
@@ -78,6 +79,11 @@ def _load(clustering):
     return scene
 
 
+@cache
+def _record(clustering):
+    return record_motion(_load(clustering), 0.7)
+
+
 @pytest.mark.parametrize(
     ("clustering", "changes"),
     [
@@ -89,7 +95,7 @@ def _load(clustering):
 )
 def test_the_native_part_gives_the_loops_wrench(clustering, changes):
     scene = Setting("", "", changes).apply(_load(clustering))
-    motion = record_motion(_load(clustering), 0.7)
+    motion = _record(clustering)
     part = make_native_part(cached_build(scene))
     search, cluster, force = (
         part.make_search(),
@@ -129,8 +135,7 @@ def test_a_slower_loop_is_timed_at_its_own_ticks():
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")
 def test_only_what_the_contacts_take_is_counted():
-    scene = _load("shared")
-    motion = record_motion(scene, 0.7)
+    scene, motion = _load("shared"), _record("shared")
     part = make_native_part(cached_build(scene))
     touching = slice(650, 670)
     X, V = motion.X_WT[touching], motion.V_WT[touching]

@@ -120,18 +120,6 @@ def test_forces_are_held_where_the_loop_is_slower(cup):
     assert errors.force_rms_N == pytest.approx(np.sqrt((expected**2).mean()), rel=1e-9)
 
 
-def test_coarser_rates_are_worse(cup):
-    scene, motion, truth = cup
-    rms = [
-        measure_open_loop(
-            Setting("", "", {"device.rate_hz": hz}).apply(scene), motion, truth
-        ).force_rms_N
-        for hz in (1000.0, 500.0, 250.0, 100.0)
-    ]
-    assert rms[0] == 0.0
-    assert rms == sorted(rms) and rms[-1] > rms[1] > 0.0
-
-
 def test_a_coarser_polytope_is_wrong_by_more_and_by_no_more_than_stated():
     scene = load_scene(find_scene("can_box"))
     motion = record_motion(scene, 1.5)

@@ -43,8 +43,17 @@ def _study(scene, **how):
 
 
 @pytest.fixture(scope="module")
-def study(scene):
-    return _study(scene)
+def told():
+    """What the study tells while it is made, and how far it is."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def study(scene, told):
+    """Made by a clock that moves by 40 s for each task."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study_module, "monotonic", count(0.0, 40.0).__next__)
+        return _study(scene, progress=lambda *words: told.append(words))
 
 
 def _errors(study):
@@ -120,9 +129,7 @@ def test_goes_on_after_ctrl_c(scene, study, tmp_path, stage):
     assert once_more == again
 
 
-def test_tells_how_far_it_is(scene):
-    told = []
-    _study(scene, progress=lambda what, share: told.append((what, share)))
+def test_tells_how_far_it_is(study, told):
     shares = [share for _, share in told]
     assert shares == sorted(shares)
     assert shares[0] == 0.0 and shares[-1] == 1.0
@@ -130,12 +137,8 @@ def test_tells_how_far_it_is(scene):
     assert told[-1][0].startswith("times: ")
 
 
-def test_tells_how_long_the_rest_of_a_stage_will_take(scene, monkeypatch):
-    """By a clock that a test moves by 40 s for each task."""
-    monkeypatch.setattr(study_module, "monotonic", count(0.0, 40.0).__next__)
-    told = []
-    _study(scene, progress=lambda what, share: told.append(what))
-    assert [what for what in told if what.startswith("errors")] == [
+def test_tells_how_long_the_rest_of_a_stage_will_take(study, told):
+    assert [what for what, _ in told if what.startswith("errors")] == [
         "errors: 0 of 4",
         "errors: 1 of 4, about 2 min left",
         "errors: 2 of 4, about 80 s left",
