@@ -66,6 +66,15 @@ class Conversation:
         return self.reading.gate, self.reading.fault
 
 
+@pytest.fixture
+def talk():
+    """A conversation at 1 N along x."""
+    talk = Conversation()
+    talk.tick()
+    talk.push((1.0, 0.0, 0.0), 300)
+    return talk
+
+
 def check_comes_back_when_wanted(talk):
     """The service is back: nothing is shown before a release, and then a ramp."""
     assert not talk.push((1.0, 0.0, 0.0), 300).any()
@@ -97,10 +106,7 @@ def test_force_keeps_its_direction_at_the_limit(size):
     assert np.linalg.norm(shown, axis=1).max() <= MAX_FORCE_N
 
 
-def test_a_loop_that_stops_writing_ends_at_zero_and_must_recover():
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_a_loop_that_stops_writing_ends_at_zero_and_must_recover(talk):
     shown = np.array([talk.tick()[0] for _ in range(200)])
     first_less = int(np.argmax(shown < 1.0))
     assert first_less == pytest.approx(1e3 * TTL_S, abs=1)
@@ -118,28 +124,19 @@ def test_a_loop_that_stops_writing_ends_at_zero_and_must_recover():
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
-def test_a_wrench_that_is_not_finite_is_a_fault_that_stays(value):
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_a_wrench_that_is_not_finite_is_a_fault_that_stays(talk, value):
     assert (talk.push((value, 0.0, 0.0), 1) == 0.0).all()
     assert talk.state == (GateState.FAULT, Fault.NOT_FINITE)
     assert (talk.push((1.0, 0.0, 0.0), 300) == 0.0).all()
 
 
-def test_a_handle_that_is_too_fast_is_a_fault():
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_a_handle_that_is_too_fast_is_a_fault(talk):
     talk.devices["049D"].v = np.array([0.0, 2.5, 0.0])
     assert (talk.push((1.0, 0.0, 0.0), 1) == 0.0).all()
     assert talk.state == (GateState.FAULT, Fault.OVERSPEED)
 
 
-def test_one_damaged_message_is_counted_and_not_felt():
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_one_damaged_message_is_counted_and_not_felt(talk):
     talk.written = command((1.0, 0.0, 0.0))
     reading = talk.reading
     assert talk.tick("{") == pytest.approx([1.0, 0.0, 0.0])
@@ -149,10 +146,7 @@ def test_one_damaged_message_is_counted_and_not_felt():
 
 
 @pytest.mark.parametrize("text", ["{", "{}", '{"inverse3": []}'])
-def test_when_nothing_usable_comes_the_device_is_at_fault(text):
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_when_nothing_usable_comes_the_device_is_at_fault(talk, text):
     shown = []
     for _ in range(150):
         talk.written = command((1.0, 0.0, 0.0))
@@ -164,10 +158,7 @@ def test_when_nothing_usable_comes_the_device_is_at_fault(text):
     check_comes_back_when_wanted(talk)
 
 
-def test_a_command_that_fell_into_a_silence_is_not_shown_after_it():
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_a_command_that_fell_into_a_silence_is_not_shown_after_it(talk):
     for _ in range(150):
         talk.written = command((1.0, 0.0, 0.0))
         talk.tick("{")
@@ -178,8 +169,9 @@ def test_a_command_that_fell_into_a_silence_is_not_shown_after_it():
     assert talk.state == (GateState.IDLE, Fault.NONE)
 
 
-@pytest.mark.parametrize("ttl_s", [0.05, 0.5, 1.0])
-@pytest.mark.parametrize("silence_ns", [101_000_000, 500_000_000, 2_000_000_000])
+@pytest.mark.parametrize(
+    ("ttl_s", "silence_ns"), [(0.05, 101_000_000), (1.0, 101_000_000), (0.5, 2 * 10**9)]
+)
 def test_after_a_silence_no_force_comes_before_somebody_wants_it(ttl_s, silence_ns):
     talk = Conversation(ttl_s=ttl_s)
     talk.tick()
@@ -190,10 +182,7 @@ def test_after_a_silence_no_force_comes_before_somebody_wants_it(ttl_s, silence_
 
 
 @pytest.mark.parametrize("ticks", [1, 150])
-def test_a_release_works_while_nothing_usable_comes(ticks):
-    talk = Conversation()
-    talk.tick()
-    talk.push((1.0, 0.0, 0.0), 300)
+def test_a_release_works_while_nothing_usable_comes(talk, ticks):
     for _ in range(ticks):
         talk.tick("{")
     talk.exchange.release()

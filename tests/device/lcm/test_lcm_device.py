@@ -92,6 +92,14 @@ class Loop:
         return reading.gate, reading.fault
 
 
+@pytest.fixture
+def loop():
+    """A loop whose device shows 1 N against the spring."""
+    loop = Loop()
+    loop.press(400, push_N=1.0)
+    return loop
+
+
 def test_nothing_is_known_before_the_first_message():
     device = LcmDevice(DrakeLcm("memq://"))
     assert device.read() is None
@@ -125,9 +133,7 @@ def test_a_command_that_is_released_comes_first():
     assert not any(any(sent.wrench) for sent in loop.sent if not sent.enable)
 
 
-def test_a_host_that_stops_finds_a_fault_that_it_must_leave():
-    loop = Loop()
-    loop.press(400, push_N=1.0)
+def test_a_host_that_stops_finds_a_fault_that_it_must_leave(loop):
     for _ in range(200):
         loop.tick()
     assert loop.state == (GateState.FAULT, Fault.STALE)
@@ -139,9 +145,7 @@ def test_a_host_that_stops_finds_a_fault_that_it_must_leave():
     assert np.diff(shown).max() <= 0.05 * MAX_FORCE_N
 
 
-def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it():
-    loop = Loop()
-    loop.press(400, push_N=1.0)
+def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it(loop):
     before = loop.device.read()
     loop.start_device()
     assert not loop.press(600, push_N=1.0).any()
@@ -163,9 +167,7 @@ def fall_silent(loop):
     return loop.device.read()
 
 
-def test_a_device_that_says_nothing_is_at_fault_until_somebody_wants_it():
-    loop = Loop()
-    loop.press(400, push_N=1.0)
+def test_a_device_that_says_nothing_is_at_fault_until_somebody_wants_it(loop):
     before = loop.device.read()
     silent = fall_silent(loop)
     assert (silent.gate, silent.fault) == (GateState.FAULT, Fault.DEVICE)
@@ -183,10 +185,8 @@ def test_a_device_that_says_nothing_is_at_fault_until_somebody_wants_it():
     assert loop.state == (GateState.ACTIVE, Fault.NONE)
 
 
-def test_no_force_is_asked_for_a_handle_that_is_not_heard():
+def test_no_force_is_asked_for_a_handle_that_is_not_heard(loop):
     """Only its words are lost; it would show the same force for ever."""
-    loop = Loop()
-    loop.press(400, push_N=1.0)
     fall_silent(loop)
     sent = len(loop.sent)
     for _ in range(100):
@@ -195,9 +195,7 @@ def test_no_force_is_asked_for_a_handle_that_is_not_heard():
     assert not any(command.enable for command in loop.sent[sent:])
 
 
-def test_a_closed_device_is_released():
-    loop = Loop()
-    loop.press(400, push_N=1.0)
+def test_a_closed_device_is_released(loop):
     loop.device.close()
     loop.device.close()
     statuses = []

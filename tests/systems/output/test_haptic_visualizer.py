@@ -30,9 +30,17 @@ from drake_haptics.systems.output import haptic_visualizer
 from drake_haptics.systems.output.meshcat_shapes import ArrowPool
 
 
-def test_tool_and_ghost_are_where_the_ports_say():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+@pytest.fixture
+def meshcat():
+    return FakeMeshcat()
+
+
+@pytest.fixture
+def visualizer(meshcat):
+    return make_visualizer(meshcat)
+
+
+def test_tool_and_ghost_are_where_the_ports_say(meshcat, visualizer):
     X_WT = RigidTransform(RollPitchYaw(1, 2, 3), [1, 2, 3])
     visualizer.ForcedPublish(make_context(visualizer, X_WT=X_WT))
     assert meshcat.transforms["/haptics/tool"].IsNearlyEqualTo(X_WT, 1e-12)
@@ -40,9 +48,9 @@ def test_tool_and_ghost_are_where_the_ports_say():
     assert ghost.IsNearlyEqualTo(X_WH @ X_HT, 1e-12)
 
 
-def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds(
+    meshcat, visualizer
+):
     offset = RigidTransform(np.array([0.003, 0.0, 0.004]))
     visualizer.ForcedPublish(make_context(visualizer, X_WT=offset @ X_WH @ X_HT))
     X_WLine = meshcat.transforms["/haptics/coupling"]
@@ -59,9 +67,7 @@ def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
     )
 
 
-def test_no_line_is_seen_while_handle_and_tool_were_never_apart():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_no_line_is_seen_while_handle_and_tool_were_never_apart(meshcat, visualizer):
     visualizer.ForcedPublish(make_context(visualizer))
     assert meshcat.properties["/haptics/coupling/line", "scale"][2] < 1e-6
 
@@ -72,9 +78,7 @@ def assert_tip_is_at(meshcat, path, p_W):
     np.testing.assert_allclose(meshcat.transforms[path] @ tip, p_W, atol=1e-12)
 
 
-def test_contacts_are_green_near_and_red_penetrating():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_contacts_are_green_near_and_red_penetrating(meshcat, visualizer):
     visualizer.ForcedPublish(make_context(visualizer, [0.001, -0.002]))
     # The deepest first; child 0 is green, child 1 is red.
     assert meshcat.visible("/haptics/contacts") == [
@@ -84,8 +88,7 @@ def test_contacts_are_green_near_and_red_penetrating():
     assert_tip_is_at(meshcat, "/haptics/contacts/0", [3, 4, 5])
 
 
-def test_an_arrow_that_moves_keeps_its_length():
-    meshcat = FakeMeshcat()
+def test_an_arrow_that_moves_keeps_its_length(meshcat):
     pool = ArrowPool(meshcat, "/a", 1, [Rgba(1, 0, 0)])
     for x in (0.0, 0.1, 0.2):
         p_W = np.array([[x, 0, 0]])
@@ -93,9 +96,7 @@ def test_an_arrow_that_moves_keeps_its_length():
         assert_tip_is_at(meshcat, "/a/0", p_W[0])
 
 
-def test_contact_arrows_point_along_the_normal():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_contact_arrows_point_along_the_normal(meshcat, visualizer):
     context = make_context(visualizer)
     nhat = np.array([0.6, 0.0, -0.8])
     visualizer.GetInputPort("contacts").FixValue(
@@ -106,9 +107,7 @@ def test_contact_arrows_point_along_the_normal():
     np.testing.assert_allclose(R[:, 2], nhat, atol=1e-12)
 
 
-def test_arrows_disappear_with_their_contacts():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_arrows_disappear_with_their_contacts(meshcat, visualizer):
     visualizer.StartRecording()  # so that no frame is left out
     visualizer.ForcedPublish(make_context(visualizer, [-0.001, -0.001]))
     assert len(meshcat.visible("/haptics/contacts")) == 2
@@ -116,9 +115,7 @@ def test_arrows_disappear_with_their_contacts():
     assert meshcat.visible("/haptics") == []
 
 
-def test_more_contacts_than_arrows_leaves_the_deepest():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_more_contacts_than_arrows_leaves_the_deepest(meshcat, visualizer):
     distance = np.linspace(0.002, -0.002, 200)
     visualizer.ForcedPublish(make_context(visualizer, distance))
     visible = meshcat.visible("/haptics/contacts")
@@ -126,9 +123,7 @@ def test_more_contacts_than_arrows_leaves_the_deepest():
     assert all(path.endswith("/1") for path in visible)
 
 
-def test_force_arrows_grow_with_the_force():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_force_arrows_grow_with_the_force(meshcat, visualizer):
     forces = [(0, 0, 1.0), (0, 2.0, 0), (0, 0, 0)]
     visualizer.ForcedPublish(make_context(visualizer, [-0.001] * 3, forces))
     length = [
@@ -139,9 +134,7 @@ def test_force_arrows_grow_with_the_force():
     assert len(meshcat.visible("/haptics/clusters")) == 2
 
 
-def test_the_force_on_the_hand_is_drawn_at_the_handle():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_the_force_on_the_hand_is_drawn_at_the_handle(meshcat, visualizer):
     visualizer.ForcedPublish(make_context(visualizer, f_H_W=(0, -3.0, 0)))
     X_WArrow = meshcat.transforms["/haptics/force/0"]
     assert_tip_is_at(meshcat, "/haptics/force/0", X_WH.translation())
@@ -150,9 +143,9 @@ def test_the_force_on_the_hand_is_drawn_at_the_handle():
     )
 
 
-def test_the_torque_on_the_hand_begins_at_the_handle_along_its_axis():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_the_torque_on_the_hand_begins_at_the_handle_along_its_axis(
+    meshcat, visualizer
+):
     visualizer.ForcedPublish(make_context(visualizer, tau_H_W=(0.12, 0, -0.16)))
     X_WArrow = meshcat.transforms["/haptics/torque/0"]
     np.testing.assert_allclose(X_WArrow.translation(), X_WH.translation())
@@ -163,10 +156,10 @@ def test_the_torque_on_the_hand_begins_at_the_handle_along_its_axis():
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0, 30.0])
-def test_an_arrow_is_as_long_as_its_share_of_the_devices_limit(share):
+def test_an_arrow_is_as_long_as_its_share_of_the_devices_limit(
+    meshcat, visualizer, share
+):
     """At the limit a third of the tool's size, and never more."""
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
     size_m = np.linalg.norm(np.ptp(make_mesh().vertices, axis=0))
     wrench = {
         "f_H_W": (0, share * MAX_FORCE_N, 0),
@@ -178,16 +171,14 @@ def test_an_arrow_is_as_long_as_its_share_of_the_devices_limit(share):
         assert length == pytest.approx(min(share, 1.0) * size_m / 3)
 
 
-def test_a_device_without_torque_has_no_arrow_of_it():
-    meshcat = FakeMeshcat()
+def test_a_device_without_torque_has_no_arrow_of_it(meshcat):
     visualizer = make_visualizer(meshcat, max_torque_Nm=0.0)
     visualizer.ForcedPublish(make_context(visualizer, f_H_W=(0, 1.0, 0)))
     assert meshcat.visible("/haptics/torque") == []
     assert len(meshcat.visible("/haptics/force")) == 1
 
 
-def test_friction_is_drawn_dark_where_it_sticks_and_light_where_it_slides():
-    meshcat = FakeMeshcat()
+def test_friction_is_drawn_dark_where_it_sticks_and_light_where_it_slides(meshcat):
     visualizer = make_visualizer(meshcat, has_friction=True)
     context = make_context(visualizer, [-1e-3] * 3)
     # The third cluster has none.
@@ -201,15 +192,12 @@ def test_friction_is_drawn_dark_where_it_sticks_and_light_where_it_slides():
     np.testing.assert_allclose(arrow.rotation().matrix()[:, 2], [0, -1, 0], atol=1e-12)
 
 
-def test_without_friction_there_is_no_arrow_and_no_port_for_it():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
+def test_without_friction_there_is_no_arrow_and_no_port_for_it(meshcat, visualizer):
     assert not visualizer.HasInputPort("friction_force")
     assert not [path for path, _ in meshcat.properties if "friction" in path]
 
 
-def test_objects_that_move_follow_their_port_and_others_are_placed_once():
-    meshcat = FakeMeshcat()
+def test_objects_that_move_follow_their_port_and_others_are_placed_once(meshcat):
     X_WO = RigidTransform(np.array([1.0, 2, 3]))
     objects = [
         ContactObject("table", make_mesh(), X_WO),
@@ -266,8 +254,7 @@ def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
     assert not meshcat.objects
 
 
-def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden():
-    meshcat = FakeMeshcat()
+def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden(meshcat):
     picture = make_picture(meshcat)
     picture.show("pieces", True)
     drawing = picture.draw_views()
@@ -279,8 +266,7 @@ def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden():
     assert meshcat.properties["/haptics/tool/pieces", "visible"] is True
 
 
-def test_pieces_that_are_hidden_while_they_are_sent_are_hidden():
-    meshcat = FakeMeshcat()
+def test_pieces_that_are_hidden_while_they_are_sent_are_hidden(meshcat):
     picture = make_picture(meshcat)
     picture.show("pieces", True)
     drawing = picture.draw_views()
@@ -293,8 +279,7 @@ def test_pieces_that_are_hidden_while_they_are_sent_are_hidden():
     assert meshcat.properties.get(("/haptics/tool/<object>", "visible"), True)
 
 
-def test_views_of_a_frame_that_is_broken_off_are_drawn_in_the_next_one():
-    meshcat = FakeMeshcat()
+def test_views_of_a_frame_that_is_broken_off_are_drawn_in_the_next_one(meshcat):
     picture = make_picture(meshcat)
     for view in ("contacts", "ghost"):
         picture.show(view, False)
@@ -309,8 +294,7 @@ def test_a_view_that_there_is_not_is_refused():
         make_visualizer(FakeMeshcat()).Show("piece", True)
 
 
-def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
-    meshcat = FakeMeshcat()
+def test_an_arrow_stays_in_its_slot_while_others_come_and_go(meshcat):
     pool = ArrowPool(meshcat, "/a", 4, [Rgba(1, 0, 0)])
     up = np.array([[0, 0, 1.0]] * 3)
 
@@ -333,8 +317,7 @@ def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
     assert set(third) == {"y", "b"}
 
 
-def test_what_does_not_change_is_not_sent_again():
-    meshcat = FakeMeshcat()
+def test_what_does_not_change_is_not_sent_again(meshcat):
     pool = ArrowPool(meshcat, "/a", 64, [Rgba(1, 0, 0), Rgba(0, 1, 0)])
     calls = []
     meshcat.SetProperty = lambda *args: calls.append(args)
@@ -357,8 +340,7 @@ def test_no_context_is_kept():
     )
 
 
-def test_its_twin_takes_the_same_and_draws_nothing():
-    meshcat = FakeMeshcat()
+def test_its_twin_takes_the_same_and_draws_nothing(meshcat):
     visualizer = make_visualizer(meshcat, [ContactObject("lid", make_mesh(), None)])
     sent = len(meshcat.transforms), len(meshcat.properties), len(meshcat.objects)
     twin = visualizer.ToAutoDiffXd()
