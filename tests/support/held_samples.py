@@ -17,13 +17,12 @@ from drake_haptics.analysis.stiffness_limits import StiffnessLimits
 from drake_haptics.bounds.held_handle import calc_scene_handle
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.settings import change_scene
 
 
 @cache
-def load_held(name: str, *settings: str) -> HeldScene:
-    """Returns a shipped scene, with settings as of `--set`, at its firmest contact."""
-    return hold_scene(change_scene(load_scene(find_scene(name)), settings))
+def load_held(name: str) -> HeldScene:
+    """Returns a shipped scene at its firmest contact."""
+    return hold_scene(load_scene(find_scene(name)))
 
 
 def hold_with_grip(held: HeldScene, grip: str) -> HeldScene:
