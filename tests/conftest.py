@@ -5,6 +5,7 @@ import signal
 import sys
 from pathlib import Path
 
+import hypothesis_profile
 from skip_summary import skip_summary
 
 # Matrices here are small, and several workers share the cores: threads of linear
@@ -24,6 +25,8 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, lambda *_: None)
+
+hypothesis_profile.load()
 
 FOLDER = Path(__file__).parent
 # The files that take longest, longest first: begun last, they would be waited for.

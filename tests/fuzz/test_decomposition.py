@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import fuzz_profile
 import numpy as np
 import pytest
 from fuzz_strategies import point_sets, wrong_points
@@ -14,7 +13,6 @@ from hypothesis.extra import numpy as hnp
 
 from drake_haptics import HapticsError, Mesh, decompose
 
-fuzz_profile.load()
 TETRAHEDRON = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import fuzz_profile
 import numpy as np
 import pytest
 from fuzz_strategies import point_sets, poses, wrong_points, wrong_poses
@@ -13,8 +12,6 @@ from hypothesis import strategies as st
 from minkowski_truth import place, support_gap
 
 from drake_haptics import ConvexPair, ConvexPolytope
-
-fuzz_profile.load()
 
 
 def tolerance(a: np.ndarray, b: np.ndarray, X: np.ndarray, distance: float) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-import fuzz_profile
 import numpy as np
 import pytest
 from fuzz_strategies import poses, wrong_poses
@@ -14,8 +13,6 @@ from hypothesis import strategies as st
 from mesh_samples import box, l_prism
 
 from drake_haptics import ContactTracker, Decomposition, Mesh, decompose
-
-fuzz_profile.load()
 
 
 @cache

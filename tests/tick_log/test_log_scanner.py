@@ -3,7 +3,6 @@
 import random
 import tracemalloc
 
-import fuzz_profile
 import numpy as np
 import pytest
 from hypothesis import given
@@ -26,8 +25,6 @@ from drake_haptics.tick_log.log_format import (
     pack_header,
 )
 from drake_haptics.tick_log.tick_log import Gap, read_tick_log
-
-fuzz_profile.load()
 
 BLOCKS = [make_rows(7), make_rows(5, first=7), make_rows(9, first=12)]
 TICKS = 21

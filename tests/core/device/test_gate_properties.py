@@ -223,11 +223,5 @@ class GateMachine(RuleBasedStateMachine):
         assert self.gate.rejected == self.received - self.gate.counts["accepted"]
 
 
-GateMachine.TestCase.settings = settings(
-    max_examples=150,
-    stateful_step_count=40,
-    derandomize=True,
-    deadline=None,
-    database=None,
-)
+GateMachine.TestCase.settings = settings(stateful_step_count=40)
 TestGate = GateMachine.TestCase

@@ -199,7 +199,7 @@ vectors = st.lists(numbers, min_size=6, max_size=6).map(np.array)
 small = st.floats(-10, 10)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     st.lists(
         st.tuples(

@@ -96,7 +96,7 @@ def test_the_sizes_are_those_documented() -> None:
     assert len(_core.pack_command(**A_COMMAND)) == 88
 
 
-@settings(max_examples=200, derandomize=True, deadline=None, database=None)
+@settings(max_examples=200)
 @given(COMMANDS)
 def test_a_command_has_the_documented_bytes_and_comes_back(command: Any) -> None:
     packet = command_bytes(command)
@@ -105,7 +105,7 @@ def test_a_command_has_the_documented_bytes_and_comes_back(command: Any) -> None
     assert_same(_core.unpack_command(packet), command)
 
 
-@settings(max_examples=200, derandomize=True, deadline=None, database=None)
+@settings(max_examples=200)
 @given(STATES)
 def test_a_state_has_the_documented_bytes_and_comes_back(state: Any) -> None:
     packet = state_bytes(state)

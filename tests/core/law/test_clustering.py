@@ -24,7 +24,7 @@ def connected(points: np.ndarray, reach: float) -> np.ndarray:
     return label
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     seed=st.integers(0, 10_000),
     count=st.integers(1, 25),

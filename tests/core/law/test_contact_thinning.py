@@ -29,7 +29,7 @@ def columns(contacts):
     )
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(
     seed=st.integers(0, 10_000),
     count=st.integers(1, 40),
@@ -47,7 +47,7 @@ def test_a_deeper_one_nearby_stands_for_each_that_is_left_out(seed, count, cell)
         assert (stays | (near & alike & (left[:, 0] <= row[0]))).any()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), cell=st.floats(1e-3, 5e-2))
 def test_none_that_is_kept_stands_for_another(seed, cell):
     kept = _core.thin_contacts(scatter(seed, 30), cell)

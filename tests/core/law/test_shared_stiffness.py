@@ -48,7 +48,7 @@ def rows(contacts: _core.ContactSet, t: float) -> tuple[np.ndarray, np.ndarray]:
     return C, t - contacts.distance[pushing]
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(seed=st.integers(0, 100_000), count=st.integers(1, 8), m=st.integers(1, 3))
 def test_compressions_are_those_of_the_convex_problem(
     seed: int, count: int, m: int

@@ -250,7 +250,7 @@ WORDS = [None, None, None, "", "{", "[]", '{"inverse3": [{"device_id": "049D"}]}
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     st.lists(
         st.tuples(

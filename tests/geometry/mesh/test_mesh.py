@@ -376,7 +376,7 @@ def test_strict_refuses_what_needs_repair_and_names_it():
 # Whatever the disorder, the same solid.
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1), sample=st.sampled_from(["box", "l_prism"]))
 def test_disorder_is_repaired_to_the_same_solid(seed, sample):
     """Faces permuted, rotated, some turned over, some written again either way."""
@@ -399,7 +399,7 @@ def test_disorder_is_repaired_to_the_same_solid(seed, sample):
     assert mesh.report.solids == mesh.report.components == 1
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     V=st.lists(
         st.tuples(*[st.sampled_from([0.0, -0.0, 1.0, 0.5, 1e-300, 1e8])] * 3),

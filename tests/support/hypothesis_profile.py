@@ -1,5 +1,6 @@
-"""The number of examples that the fuzz tests try: few and always the same, or many.
+"""The examples that Hypothesis tries: few and always the same, or many and new ones.
 
+No test fails because the computer is slow.
 `HYPOTHESIS_PROFILE=fuzz pytest tests/fuzz` tries thousands of new ones.
 """
 
