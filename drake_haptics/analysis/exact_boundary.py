@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
-from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.common.colors import INKS
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.report.plain_data import to_plain_data
+from drake_haptics.report.plot_labels import find_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.modes import Mode, ModeKind, PeriodMap, find_modes
-from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.common.colors import STABLE, UNSTABLE
+from drake_haptics.report.plot_labels import find_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,9 +38,6 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     Args:
         linear: The map from `linearize_sampled` or `calc_monodromy`.
         axes: The axes to draw on. Defaults to new ones.
-
-    Returns:
-        The axes.
     """
     axes = find_axes(axes, (6.0, 6.0))
     _draw_grid(axes, linear.period_s)

@@ -27,10 +27,10 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.common.colors import INKS, PASSIVITY
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
+from drake_haptics.report.plot_labels import find_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,7 +10,7 @@ from drake_haptics.analysis.modes import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.bounds.held_handle import calc_force_delay
-from drake_haptics.report.page import check_page_path, draw_png, write_page
+from drake_haptics.report.page import write_page, write_picture
 from drake_haptics.scene.schema import Scene
 
 _SLOWEST_SHOWN = 12
@@ -22,12 +22,10 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
     """Writes the page as one HTML file, and its picture as a PNG file next to it.
 
     Raises:
-        ValueError: The path has the picture's suffix.
+        HapticsError: The path has the picture's suffix.
         OSError: A file cannot be written.
     """
-    check_page_path(path)
-    sheet = draw_png(stability.plot())
-    path.with_suffix(".png").write_bytes(sheet)
+    sheet = write_picture(stability.plot(), path)
     write_page(
         path,
         "analysis/stability_page.html",

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.analysis.sampled_wall import (
     SampledWall,
     calc_largest_delay,
@@ -25,6 +24,7 @@ from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.report.plain_data import to_plain_data
+from drake_haptics.report.plot_labels import find_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

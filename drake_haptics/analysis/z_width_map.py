@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.jobs.study import run_study
-from drake_haptics.analysis.plot_axes import find_axes
 from drake_haptics.bounds.sampled_spring import (
     calc_passive_stiffness,
     calc_stable_stiffness,
@@ -21,6 +20,7 @@ from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, 
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.report.plain_data import to_plain_data
+from drake_haptics.report.plot_labels import find_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -151,7 +151,8 @@ class ZWidth:
     and Brown 1994). Units are those of translation, or N·m/rad and N·m·s/rad.
 
     Attributes:
-        stiffness: K, (nK,), rising, N/m. damping: B, (nB,), rising, N·s/m.
+        stiffness: K, (nK,), rising, N/m.
+        damping: B, (nB,), rising, N·s/m.
         spectral_radius: (nB, nK), of one period; stable below 1; NaN if the point could
             not be evaluated.
         passive_damping: (nB, nK), damping that device and hand must have for the point
@@ -168,15 +169,12 @@ class ZWidth:
     __repr__ = one_line
 
     def largest_stable_stiffness(self) -> np.ndarray:
-        """Returns the stiffness below which the whole map is stable, for each damping.
+        """Returns the stiffness (nB,) below which the whole map is stable, N/m.
 
         That is where the spectral radius first crosses 1, interpolated along K between
-        two points.
-
-        Returns:
-            (nB,), N/m. Infinite if the map is stable to its end; NaN if even the lowest
-            stiffness is unstable, or a point before the crossing could not be
-            evaluated.
+        two points. It is infinite if the map is stable to its end; NaN if even the
+        lowest stiffness is unstable, or a point before the crossing could not be
+        evaluated.
         """
         return np.array([self._cross_one(radius) for radius in self.spectral_radius])
 
@@ -329,7 +327,6 @@ class _Point:
     evaluate: Callable[[float, float], Mapping[str, float]]
 
     def __call__(self, task: list[float]) -> dict[str, Any]:
-        """Returns the results for (K, B), or the reason why there are none."""
         try:
             found = self.evaluate(*task)
         except ValueError as error:

@@ -57,7 +57,7 @@ def _row(cells: tuple[str, ...]) -> str:
 
 
 def check_page_path(path: Path) -> None:
-    """Checks that page and picture are different files.
+    """Checks that a page and its picture are different files.
 
     Raises:
         HapticsError: The path has the picture's suffix.
@@ -74,6 +74,19 @@ def draw_png(figure: Figure, dpi: int = 110) -> bytes:
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=dpi)
     return stream.getvalue()
+
+
+def write_picture(figure: Figure, page: Path) -> bytes:
+    """Writes the picture of a page as a PNG file next to it, and returns it.
+
+    Raises:
+        HapticsError: The page has the picture's suffix.
+        OSError: The file cannot be written.
+    """
+    check_page_path(page)
+    png = draw_png(figure)
+    page.with_suffix(".png").write_bytes(png)
+    return png
 
 
 def write_page(path: Path, template: str, **data: object) -> None:

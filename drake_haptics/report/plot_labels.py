@@ -1,4 +1,4 @@
-"""Places labels, axis numbers and legends around the points of a plot."""
+"""Makes the axes of a plot, and places its labels, axis numbers and legends."""
 
 from __future__ import annotations
 
@@ -33,6 +33,18 @@ _WIDE = 4.0
 # Number of letters in a line of the legends.
 _TITLE_WIDTH, _LABEL_WIDTH = 112, 80
 _LEGEND_SIZE = 8
+
+
+def find_axes(axes: Axes | None, size: tuple[float, float] | None = None) -> Axes:
+    """Returns the axes, or those of a new figure of a size in inches.
+
+    The size defaults to Matplotlib's.
+    """
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot
+
+    return pyplot.figure(figsize=size).add_subplot()
 
 
 @dataclass(frozen=True)
