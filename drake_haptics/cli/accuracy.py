@@ -28,37 +28,12 @@ from drake_haptics.cli.options import (
     write_json,
 )
 from drake_haptics.common.errors import HapticsError
-from drake_haptics.evaluation.accuracy.budget import (
-    RUNS,
-    BudgetChoice,
-    choose_setting,
-    describe_file,
-    describe_help,
-    describe_outcome,
-    describe_sacrifices,
-    to_budget_data,
-)
+from drake_haptics.evaluation.accuracy import budget, report
 from drake_haptics.evaluation.accuracy.costs import measure_p99
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.evaluation.accuracy.knobs import list_settings
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
 from drake_haptics.evaluation.accuracy.peers.run import add_peers
-from drake_haptics.evaluation.accuracy.report import (
-    MODEL_MARK,
-    SCENE_MARK,
-    describe_knees,
-    describe_machine,
-    describe_missing,
-    describe_models,
-    describe_peers,
-    describe_reference,
-    describe_verdict,
-    get_columns,
-    group_rows,
-    make_cells,
-    make_label,
-    name_setting,
-)
 from drake_haptics.evaluation.accuracy.setting import Setting, read_setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
 from drake_haptics.report.page import check_page_path
@@ -70,53 +45,53 @@ from drake_haptics.simulation.run import RunError
 
 def print_study(console: Console, study: AccuracyStudy) -> None:
     """Prints the verdict, the price list, its knees, and notes on them."""
-    for sentence in describe_verdict(study):
+    for sentence in report.describe_verdict(study):
         console.print(sentence, style="bold")
-    console.print(describe_reference(study), style="dim")
+    console.print(report.describe_reference(study), style="dim")
     console.print()
     console.print(_make_table(study))
     console.print()
-    for sentence in describe_knees(study):
+    for sentence in report.describe_knees(study):
         console.print(f"Knee: {sentence}")
-    for sentence in describe_peers(study):
+    for sentence in report.describe_peers(study):
         console.print(f"Beside it: {sentence}")
-    for column in get_columns(study):
+    for column in report.get_columns(study):
         console.print(f"{column.head}, {column.unit}: {column.meaning}", style="dim")
-    console.print(f"{SCENE_MARK} the scene as it is", style="dim")
-    if models := describe_models(study):
-        console.print(
-            f"{MODEL_MARK} differences of model, not errors: {'; '.join(models)}",
-            style="dim",
-        )
-    for sentence in describe_missing(study):
+    console.print(f"{report.SCENE_MARK} the scene as it is", style="dim")
+    if models := report.describe_models(study):
+        words = f"differences of model, not errors: {'; '.join(models)}"
+        console.print(f"{report.MODEL_MARK} {words}", style="dim")
+    for sentence in report.describe_missing(study):
         console.print(f"not measured: {sentence}", style="dim")
-    console.print(describe_machine(study), style="dim")
+    console.print(report.describe_machine(study), style="dim")
 
 
 def print_choice(
-    console: Console, choice: BudgetChoice, scene: Scene, name: str
+    console: Console, choice: budget.BudgetChoice, scene: Scene, name: str
 ) -> None:
     """Prints the outcome for a budget, and the accuracy that it costs."""
-    console.print(describe_outcome(choice, name), style="bold")
+    console.print(budget.describe_outcome(choice, name), style="bold")
     if not choice.holds:
-        for sentence in describe_help(choice):
+        for sentence in budget.describe_help(choice):
             console.print(sentence)
         return
-    for sentence in describe_sacrifices(choice, scene):
+    for sentence in budget.describe_sacrifices(choice, scene):
         console.print(f"given up: {sentence}")
 
 
 def _make_table(study: AccuracyStudy) -> Table:
-    columns = get_columns(study)
+    columns = report.get_columns(study)
     table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
     # In a narrow terminal labels wrap and figures do not.
     table.add_column("setting")
     for column in columns:
         table.add_column(f"{column.head}\n{column.unit}", justify="right", no_wrap=True)
-    for knob, rows in group_rows(study):
+    for knob, rows in report.group_rows(study):
         table.add_row(Text(knob, style="bold"))
         for row in rows:
-            table.add_row(Text(make_label(row)), *make_cells(row, columns))
+            table.add_row(
+                Text(report.make_label(row)), *report.make_cells(row, columns)
+            )
     return table
 
 
@@ -217,13 +192,13 @@ def accuracy(
                 call = write_call("accuracy", scene, settings)
                 write_accuracy_page(study, page, f"{call} --quick" if quick else call)
         else:
-            choice = choose_setting(
+            choice = budget.choose_setting(
                 chosen,
                 budget_us,
                 make_study=partial(measure, show),
                 measure_p99=measure_p99,
                 progress=show,
-                runs=1 if quick else RUNS,
+                runs=1 if quick else budget.RUNS,
             )
     if budget_us is None:
         _show_study(study, None if words else page, json_file)
@@ -254,13 +229,13 @@ def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
     """Raises HapticsError if the requested setting could not be measured."""
     for row in study.rows:
         if row.setting in settings and row.failure_reason:
-            raise HapticsError(f"--only: {name_setting(row)}: {row.failure_reason}")
+            raise HapticsError(
+                f"--only: {report.name_setting(row)}: {row.failure_reason}"
+            )
 
 
 def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) -> None:
-    """Prints the price list."""
-    if json_file is not None:
-        write_json(study.to_json_data(), json_file)
+    write_json(study.to_json_data(), json_file)
     if json_file == "-":
         return
     console = make_console(markup=False)
@@ -270,13 +245,16 @@ def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) 
 
 
 def _show_choice(
-    choice: BudgetChoice, scene: Scene, name: str, file: Path, json_file: str | None
+    choice: budget.BudgetChoice,
+    scene: Scene,
+    name: str,
+    file: Path,
+    json_file: str | None,
 ) -> None:
     """Prints the outcome for a budget, and writes the scene that meets it."""
     if choice.holds:
-        write_scene(choice.scene, file, describe_file(choice, scene, name))
-    if json_file is not None:
-        write_json(to_budget_data(choice, scene), json_file)
+        write_scene(choice.scene, file, budget.describe_file(choice, scene, name))
+    write_json(budget.to_budget_data(choice, scene), json_file)
     if json_file != "-":
         console = make_console(markup=False)
         print_choice(console, choice, scene, name)

@@ -52,8 +52,7 @@ def bench(
     outside = [load_library(file) for file in libraries]
     with progress_bar() as show:
         figures = run_benchmarks(parts or PARTS, effort, meshes, show, outside)
-    if json_file is not None:
-        write_json(figures.to_dict(), json_file)
+    write_json(figures.to_dict(), json_file)
     if json_file != "-":
         _print(figures)
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 from urllib.parse import urlsplit
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as ProgressBar
 from rich.table import Table as RichTable
 
+from drake_haptics.common.progress import Progress
 from drake_haptics.report.page import Table
 
 # Width for a file or a pipe, so that `grep` and `less -S` see whole lines.
@@ -111,21 +113,21 @@ _LINE_EVERY_S = 10.0
 
 
 @contextmanager
-def progress_bar() -> Iterator[Callable[[str, float], None]]:
+def progress_bar() -> Iterator[Progress]:
     """Shows a bar on stderr within the context, or lines if it is not a terminal.
 
     Work of a few seconds writes no line. Longer work writes one when its next part
     begins, and one every ten seconds.
 
     Yields:
-        A function to call with the current work and the share done, from 0 to 1.
+        The function that shows the progress.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
         yield _Lines(console)
         return
     columns = (BarColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    with Progress(*columns, console=console, transient=True) as bar:
+    with ProgressBar(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=1.0)
 
         def show(what: str, share: float) -> None:

@@ -117,5 +117,4 @@ def device(
         driver.run(duration, on_tick=on_tick)
     figures = driver.to_dict()
     console.print(make_driver_summary(figures))
-    if json_file is not None:
-        write_json(figures, json_file)
+    write_json(figures, json_file)

@@ -57,8 +57,6 @@ _TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its came
 
 
 class _Defect(click.ClickException):
-    """A defect of the program."""
-
     exit_code = ExitCode.DEFECT
 
 

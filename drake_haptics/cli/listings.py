@@ -45,10 +45,7 @@ def devices(json_file: str | None) -> None:
     device with a twin can be simulated; the others are used with `run --device`.
     """
     presets = {name: load_device_preset(name) for name in list_device_presets()}
-    if json_file is not None:
-        write_json(
-            {name: _to_dict(preset) for name, preset in presets.items()}, json_file
-        )
+    write_json({name: _to_dict(preset) for name, preset in presets.items()}, json_file)
     if json_file != "-":
         _print_devices(presets)
 

@@ -102,8 +102,7 @@ def info(file: Path, json_file: str | None) -> None:
     """
     with progress_bar() as show:
         summary = summarize_log(file, show)
-    if json_file is not None:
-        write_json(summary.to_dict(), json_file)
+    write_json(summary.to_dict(), json_file)
     if json_file != "-":
         _print_summary(file, summary)
 
@@ -194,9 +193,8 @@ def replay(
     difference = None
     if again.header.period_s == log.header.period_s:
         difference = compare_logs(log, again)
-    if json_file is not None:
-        described = None if difference is None else difference.to_dict()
-        write_json({"ticks": len(again.rows), "diff": described}, json_file)
+    described = None if difference is None else difference.to_dict()
+    write_json({"ticks": len(again.rows), "diff": described}, json_file)
     if json_file == "-":
         return
     click.echo(f"Replayed {count(log.count_ticks_from_start(), 'tick')}.")
@@ -238,8 +236,7 @@ def diff(
             plot_diff(*logs, names=(a.name, b.name), path=plot)
         except ValueError as error:  # The suffix is not that of a picture.
             raise HapticsError(f"--plot: {error}") from error
-    if json_file is not None:
-        write_json(difference.to_dict(), json_file)
+    write_json(difference.to_dict(), json_file)
     if json_file != "-":
         print_diff(difference, logs[0].header.period_s)
         if plot is not None:

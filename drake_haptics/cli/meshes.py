@@ -52,8 +52,7 @@ def check(
 ) -> None:
     """Report the contents and the defects of a mesh file, and how each is handled."""
     report = read_mesh(mesh, unit, scale, max_triangles).report
-    if json_file is not None:
-        write_json(report.to_dict(), json_file)
+    write_json(report.to_dict(), json_file)
     if json_file != "-":
         make_console().print(report)
     if strict and report.unclean:
@@ -116,9 +115,8 @@ def decompose(
         )
     if out is not None:
         result.save(out)
-    if json_file is not None:
-        data = {**result.report.to_dict(), "mesh": taken_in.report.to_dict()}
-        write_json(data, json_file)
+    data = {**result.report.to_dict(), "mesh": taken_in.report.to_dict()}
+    write_json(data, json_file)
     if json_file != "-":
         _print_report(result)
     if show or html is not None:

@@ -173,8 +173,10 @@ def _try_to_open(path: Path) -> str:
     return ""
 
 
-def write_json(data: dict[str, Any], file: str) -> None:
-    """Writes JSON to a file or, for "-", to stdout."""
+def write_json(data: dict[str, Any], file: str | None) -> None:
+    """Writes JSON to the file of --json, if it is given; to stdout for "-"."""
+    if file is None:
+        return
     text = json.dumps(data, indent=2, allow_nan=False)
     if file == "-":
         click.echo(text)

@@ -75,8 +75,7 @@ def paper(
             cast(tuple[Part, ...], parts) or PARTS, effort, meshes, show
         )
     write_paper_page(evaluation, out)
-    if json_file is not None:
-        write_json(evaluation.to_dict(), json_file)
+    write_json(evaluation.to_dict(), json_file)
     if json_file != "-":
         _print(evaluation, out)
 

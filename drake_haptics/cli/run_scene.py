@@ -191,8 +191,7 @@ def run_scene(
             write_scene(session.scene, scene_file, [head])
             again = shlex.join(["drake-haptics", "run", str(scene_file)])
             console.print(f"Wrote {scene_file}: {again}", soft_wrap=True, markup=False)
-        if json_file is not None:
-            write_json(session.figures, json_file)
+        write_json(session.figures, json_file)
     if session.error is not None:
         raise _BadEndError(str(session.error)) from session.error
     if (fault := session.figures.get("device", {}).get("fault", "NONE")) != "NONE":
@@ -224,7 +223,6 @@ def _prepare(
     pieces: bool,
     record: Path | None,
 ) -> None:
-    """Prepares the view and prints its address."""
     if meshcat is not None:
         configure_camera(meshcat, haptic)
     visualizer = haptic.visualizer

@@ -94,7 +94,6 @@ def _build(
     device: DeviceBackend | None,
     recorder: TickRecorder | None,
 ) -> HapticDiagram:
-    """Builds the diagram, with a bar for each mesh that is cut."""
     quiet = not console.is_terminal
     with Progress(console=console, transient=True, disable=quiet) as bars:
         tasks: dict[str, TaskID] = {}
@@ -174,14 +173,12 @@ def run_session(
         device: Address of the device; None for the scene's simulated one.
         meshcat: Meshcat to draw in; None for no picture.
         page: Page that shows and controls the run, in real time; None for no page.
-        prepare: Function that is called with the diagram before it runs, and the page's
-            address.
+        prepare: Called with the diagram before it runs, and the page's address.
         duration_s: Simulated time, s; None runs until Ctrl-C.
         energy: Whether to account for energy, if the device is simulated.
         explained: Whether to explain the parts of a tick.
         log: File that records every tick; None for no log.
-        check_interrupt: Function of a `lasting_interrupt` that is called after every
-            tick.
+        check_interrupt: Function of a `lasting_interrupt`.
     """
     timer = CallbackTimer() if explained else None
     with ExitStack() as stack:

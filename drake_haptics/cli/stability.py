@@ -96,8 +96,7 @@ def stability(
             words = f"--at {words.removeprefix('time_s ')}"
         raise HapticsError(words) from error
     write_stability_page(result, Path(scene).stem, path)
-    if json_file is not None:
-        write_json(result.to_dict(), json_file)
+    write_json(result.to_dict(), json_file)
     if json_file != "-":
         _print(result, path)
 

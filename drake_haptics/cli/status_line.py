@@ -214,24 +214,16 @@ def make_summary(figures: dict[str, Any]) -> Table:
     table.add_column(style="dim")
     table.add_column()
 
-    def times(key: str) -> str:
-        us = figures[key]
-        return (
-            f"median {us['median']:.0f} µs, p99 {us['p99']:.0f} µs,"
-            f" p99.9 {us['p99_9']:.0f} µs"
-        )
-
     contacts, clusters = figures["contacts"], figures["clusters"]
     table.add_row(
         "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
     )
-    table.add_row("whole tick", times("tick_us"))
-    table.add_row("contact query", times("contact_query_us"))
+    table.add_row("whole tick", _describe_times(figures["tick_us"]))
+    table.add_row("contact query", _describe_times(figures["contact_query_us"]))
     if late := figures["lateness_us"]:
         table.add_row(
             "late",
-            f"median {late['p50']:.0f} µs, p99 {late['p99']:.0f} µs,"
-            f" p99.9 {late['p99_9']:.0f} µs; {count(late['skipped'], 'tick')} skipped",
+            f"{_describe_times(late)}; {count(late['skipped'], 'tick')} skipped",
         )
     table.add_row(
         "contacts",
@@ -261,6 +253,11 @@ def make_summary(figures: dict[str, Any]) -> Table:
     if figures["energy_J"]:
         table.add_row("energy", _describe_energy(figures["energy_J"]))
     return table
+
+
+def _describe_times(us: Mapping[str, float]) -> str:
+    median = us["median"] if "median" in us else us["p50"]
+    return f"median {median:.0f} µs, p99 {us['p99']:.0f} µs, p99.9 {us['p99_9']:.0f} µs"
 
 
 def _explain_near_force(figures: dict[str, Any]) -> str:
@@ -300,7 +297,6 @@ def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:
 
 
 def _describe_share(part_J: float, whole_J: float) -> str:
-    """Returns an energy as a share of what the hand put in."""
     if whole_J <= _ROUNDING_J:
         return "and the hand put in none"
     return f"{100.0 * part_J / whole_J:.2g} % of what the hand put in"
@@ -354,8 +350,7 @@ def make_driver_summary(figures: Mapping[str, Any]) -> Table:
     )
     table.add_row(
         "late",
-        f"median {late['p50']:.0f} µs, p99 {late['p99']:.0f} µs,"
-        f" p99.9 {late['p99_9']:.0f} µs, {count(late['skipped'], 'tick')} skipped",
+        f"{_describe_times(late)}, {count(late['skipped'], 'tick')} skipped",
     )
     table.add_row("packets", _count_each(figures["packets"]))
     table.add_row(
@@ -371,6 +366,5 @@ def make_driver_summary(figures: Mapping[str, Any]) -> Table:
 
 
 def _count_each(counts: Mapping[str, int]) -> str:
-    """Returns each name with its count."""
     words = [f"{n} {name.lower().replace('_', ' ')}" for name, n in counts.items()]
     return ", ".join(words) or "none"

@@ -9,7 +9,7 @@ from drake_haptics.cli import console as module
 from drake_haptics.cli.console import progress_bar
 
 
-class WatchedProgress(module.Progress):
+class WatchedProgress(module.ProgressBar):
     """A bar whose clock a test moves."""
 
     now_s = 0.0
@@ -23,7 +23,7 @@ class WatchedProgress(module.Progress):
 
 def test_the_clock_goes_on_in_the_next_part_of_the_work(monkeypatch, capsys):
     monkeypatch.setenv("FORCE_COLOR", "1")  # as if stderr were a terminal
-    monkeypatch.setattr(module, "Progress", WatchedProgress)
+    monkeypatch.setattr(module, "ProgressBar", WatchedProgress)
     with progress_bar() as show:
         for WatchedProgress.now_s, what, share in (
             (10.0, "looking", 1.0),

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.progress import Progress, ignore_progress
 from drake_haptics.evaluation.accuracy.combinations import (
     Combination,
     list_combinations,
@@ -35,7 +36,7 @@ _EACH_OBJECT = "environment."
 class Trial:
     """Runs of a combination in new processes, in turns with the unchanged scene.
 
-    For each run there is the 99th percentile of the tick.
+    Each run is the 99th percentile of its ticks.
     """
 
     combination: Combination
@@ -68,7 +69,6 @@ class BudgetChoice:
     Attributes:
         scene: Scene with the chosen settings, or with the fastest if none holds the
             budget.
-        trial: Runs of the choice, or of the fastest combination.
         trials: All trials, first that of the unchanged scene.
         errors: Errors of all chosen settings together; None if there are fewer than
             two, or if nothing holds the budget.
@@ -93,7 +93,7 @@ def choose_setting(
     *,
     make_study: Callable[[list[Setting] | None], AccuracyStudy],
     measure_p99: Callable[[Scene], float],
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = ignore_progress,
     runs: int = RUNS,
 ) -> BudgetChoice:
     """Finds the most accurate combination of settings that holds a time budget.
@@ -105,13 +105,11 @@ def choose_setting(
     Args:
         scene: Scene to make faster.
         budget_us: Budget for the whole tick at its 99th percentile, µs.
-        make_study: Function that measures settings, or all of them for None. It is
-            called only if the scene does not hold the budget, and at the end with
-            several chosen settings as one.
-        measure_p99: Function that runs a scene in a new process and returns the 99th
-            percentile of its ticks, µs.
-        progress: Function that is called with the current work and the share done, from
-            0 to 1.
+        make_study: Measures settings, or all of them for None; called only if the scene
+            does not hold the budget, and at the end with several chosen settings as
+            one.
+        measure_p99: Runs a scene in a new process and returns the 99th percentile, µs.
+        progress: Shows the progress.
         runs: Number of runs of each combination.
 
     Raises:
@@ -121,10 +119,9 @@ def choose_setting(
         raise ValueError(f"budget_us must be positive and finite, is {budget_us}")
     if runs < 1:
         raise ValueError(f"runs must be at least 1, is {runs}")
-    report = progress or (lambda what, share: None)
     p99_us = []
     for i in range(runs):
-        report(f"the scene as it is: run {i + 1} of {runs}", i / runs)
+        progress(f"the scene as it is: run {i + 1} of {runs}", i / runs)
         p99_us.append(measure_p99(scene))
     as_it_is = Trial(Combination((), math.nan), tuple(p99_us), tuple(p99_us))
     if as_it_is.holds(budget_us):
@@ -134,7 +131,6 @@ def choose_setting(
     done = {0: as_it_is}
 
     def hold(index: int) -> bool:
-        """Returns whether a combination holds the budget, by running it."""
         if index not in done:
             what = f"combination {index} of {len(chain) - 1}"
             done[index] = _try_out(
@@ -142,7 +138,7 @@ def choose_setting(
                 scene,
                 measure_p99,
                 runs,
-                lambda i: report(f"{what}: run {i + 1} of {runs}", i / runs),
+                lambda i: progress(f"{what}: run {i + 1} of {runs}", i / runs),
             )
             p99_us = (*done[0].p99_us, *done[index].scene_p99_us)
             done[0] = Trial(done[0].combination, p99_us, p99_us)
@@ -180,7 +176,6 @@ def _try_out(
     runs: int,
     begin_run: Callable[[int], None],
 ) -> Trial:
-    """Runs a combination and the scene in turns; a failure holds no budget."""
     changed = combination.setting.apply(scene)
     own: list[float] = []
     scenes: list[float] = []
@@ -218,11 +213,7 @@ def describe_outcome(choice: BudgetChoice, name: str) -> str:
 
 
 def describe_sacrifices(choice: BudgetChoice, scene: Scene) -> list[str]:
-    """Describes each changed knob: its old and new value, and the error.
-
-    Returns:
-        A sentence for each knob, and one for all together if there are several.
-    """
+    """Describes the change and the error of each knob, and of several together."""
     sentences = [_describe_row(row, scene) for row in choice.trial.combination.rows]
     if choice.errors is not None:
         sentences.append(f"all together: {_describe_errors(choice.errors)}")

@@ -45,18 +45,12 @@ class StableStiffness:
 
 
 def measure_created_energy(scene: Scene, duration_s: float) -> float:
-    """Returns the energy that a scene's loop creates in a run, J.
+    """Returns the energy that a scene's loop creates, J; infinite if it diverges.
 
     It is the sum of the energies that the parts of the loop have created, from an
     `EnergyLedger`. Energy that the sampling of forces explains is included, because a
     slower rate creates more of it; the account of the whole loop is not, because in it
     dampers hide what another part creates.
-
-    Returns:
-        Energy, J; infinite if the loop diverges.
-
-    Raises:
-        KeyboardInterrupt: Ctrl-C is pressed.
     """
     try:
         statistics = run(cached_build(scene), duration_s, energy=True)

@@ -21,7 +21,7 @@ from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.real_time import RealTimePacer
-from drake_haptics.evaluation.accuracy.native_part import NativePart
+from drake_haptics.evaluation.accuracy.native_part import ContactSearch, NativePart
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
 from drake_haptics.loop.builder import HapticDiagram
@@ -67,7 +67,6 @@ def time_in_turns(scenes: Sequence[Scene], duration_s: float) -> list[TickTimes]
 
     Raises:
         RunError: A loop diverges.
-        KeyboardInterrupt: Ctrl-C is pressed.
     """
     loops = [cached_build(scene) for scene in scenes]
     paces = [RealTimePacer(loop.period_s) for loop in loops]
@@ -199,9 +198,9 @@ def _time_pass(part: NativePart, motion: RecordedMotion) -> np.ndarray:
     the difference to a call without contacts.
     """
     far = np.array([1.0, 0.0, 0.0, 0.0, _FAR_M, 0.0, 0.0])
-    nothing, _ = part.make_search().look(far)
+    nothing, _ = ContactSearch(part).look(far)
     none = part.make_clustering()(nothing)
-    search = part.make_search()
+    search = ContactSearch(part)
     carry = CallTimer(search.carry, (nothing, far))
     cluster = CallTimer(part.make_clustering(), (nothing,))
     force = CallTimer(part.make_force(), (none, far[4:], np.zeros(6)))
@@ -240,7 +239,6 @@ def measure_p99(scene: Scene) -> float:
 
 
 def _main(file: str) -> None:
-    """Prints the 99th percentile of the ticks of a scene file, µs."""
     scene = load_scene(file)
     lap_s = make_hand_path(scene.hand.path).duration_s
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.measuring.timing import TickTimes
@@ -15,6 +15,10 @@ from drake_haptics.report.plain_data import (
     to_plain_data,
 )
 
+_Figures = TypeVar("_Figures")
+
+# Smaller errors cannot be felt and count as equal.
+ERROR_FLOOR_N = 1e-3
 # Reason for an unknown stiffness that was not requested.
 NOT_SOUGHT = "not sought"
 
@@ -24,9 +28,9 @@ class Cost:
     """The time that a setting takes.
 
     Attributes:
-        tick: Times of whole ticks of the loop, paced by the clock.
-        native: Times of the contacts' part inside the core: query, clusters, wrench.
-        instructions: Instructions of that part, mean per tick; None if not counted.
+        tick: Whole ticks of the loop, paced by the clock.
+        native: The contacts' part inside the core: query, clusters, wrench.
+        instructions: Mean per tick of that part; None if not counted.
     """
 
     tick: TickTimes
@@ -36,23 +40,20 @@ class Cost:
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a setting against the truth, over a recorded motion of the tool.
+    """Errors of a setting against the reference, over a recorded motion of the tool.
+
+    Forces, in N, and torques at the tool's center of mass, in N·m, are differences:
+    root mean square and largest.
 
     Attributes:
-        force_rms_N: Root mean square of the force's difference from the reference
-            setting's, N.
-        force_max_N: Largest difference of the force, N.
-        torque_rms_Nm: Root mean square of the difference of the torque at the tool's
-            center of mass, N·m.
-        torque_max_Nm: Largest difference of this torque, N·m.
-        depth_max_m: Largest difference of the deepest contact's distance from the
-            exact one, m.
+        depth_max_m: Largest difference of the deepest contact's distance from the exact
+            one, m.
         normal_jump_deg: Largest turn of the force's direction from one tick to the
             next, beyond the reference's own, degrees.
-        energy_created_J: Energy that the loop created while it ran, J; NaN if no loop
-            was run.
-        stable_stiffness_N_per_m: Largest stable stiffness of the coupling against
-            this contact, N/m; None if it is not known, infinite if there is no limit.
+        energy_created_J: Energy that the loop created while it ran, J; NaN without a
+            run.
+        stable_stiffness_N_per_m: Largest stable stiffness of the coupling against this
+            contact, N/m; None if it is not known, infinite if there is no limit.
         stiffness_why_not: Reason why it is not known, empty otherwise.
     """
 
@@ -82,6 +83,32 @@ class Row:
     pieces: tuple[int, int] = (0, 0)
     failure_reason: str = ""
 
+    @property
+    def is_measured(self) -> bool:
+        """Whether cost and errors are known."""
+        return self.cost is not None and self.errors is not None
+
+    @property
+    def native_us(self) -> float:
+        """Median time inside the core, µs."""
+        return self._require(self.cost).native.median_us
+
+    @property
+    def tick_us(self) -> float:
+        """Median time of the whole tick, µs."""
+        return self._require(self.cost).tick.median_us
+
+    @property
+    def force_error_N(self) -> float:
+        """Force error, root mean square, at least `ERROR_FLOOR_N`, N."""
+        return max(self._require(self.errors).force_rms_N, ERROR_FLOOR_N)
+
+    def _require(self, figures: _Figures | None) -> _Figures:
+        if figures is None:
+            reason = self.failure_reason
+            raise ValueError(f"{self.setting.label} was not measured: {reason}")
+        return figures
+
 
 @dataclass(frozen=True)
 class PeerRow:
@@ -104,8 +131,7 @@ class AccuracyStudy:
 
     Attributes:
         machine: Machine of the times; see `describe_machine`.
-        ticks: Ticks of the recorded motion.
-        contact_ticks: Ticks of the motion with a contact.
+        ticks: Ticks of the recorded motion, of which `contact_ticks` have a contact.
         reference: Setting with which wrenches are compared, the finest exact one.
         rows: Rows of each knob, its settings in order; the scene as it is first.
         peers: Rows of other libraries on the same motion.

@@ -32,17 +32,16 @@ class NativePart:
 
     Attributes:
         tool: Pieces of the tool.
-        objects: Pieces of each object.
+        objects: Pieces of each of m objects.
         X_WO: (m, 7) poses [qw qx qy qz x y z] of the objects, m.
         search_m: Distance up to which contacts are found, m.
-        depth: Kind of depth of two overlapping pieces; see `SceneTracker`.
-        max_walk_steps: Bound of the walk to a depth; see `SceneTracker`.
-        query_every: Number of ticks from one contact query to the next, between which
-            contacts are extrapolated; None if every tick has a query.
+        depth: See `SceneTracker`, as `max_walk_steps`.
+        query_every: Ticks from one contact query to the next, between which contacts
+            are extrapolated; None if every tick has a query.
         tolerance_m: Distance up to which contacts push, m.
         cluster_size_m: δ of the octree, m; None if contacts share stiffness.
-        stiffness_N_per_m: (m,) stiffness of each object, N/m.
-        damping_Ns_per_m: (m,) damping of each object, N·s/m.
+        stiffness_N_per_m: (m,) of each object, N/m.
+        damping_Ns_per_m: (m,) of each object, N·s/m.
     """
 
     tool: Decomposition
@@ -56,10 +55,6 @@ class NativePart:
     cluster_size_m: float | None
     stiffness_N_per_m: np.ndarray
     damping_Ns_per_m: np.ndarray
-
-    def make_search(self) -> ContactSearch:
-        """Returns a contact search that begins at the first tick."""
-        return ContactSearch(self)
 
     def make_clustering(self) -> Callable[[_core.ContactSet], _core.ClusterSet]:
         """Returns a function that makes clusters of contacts."""
@@ -98,10 +93,7 @@ class ContactSearch:
         self._found: _core.ContactSet | None = None
 
     def look(self, X_WT: np.ndarray) -> tuple[_core.ContactSet, float]:
-        """Searches for contacts if this tick has a query.
-
-        Args:
-            X_WT: (7,) pose of the tool at the next tick.
+        """Searches for contacts at a pose (7,) of the tool, if this tick has a query.
 
         Returns:
             Contacts of the last query, and the time of this tick's query in the core,
@@ -131,15 +123,12 @@ class ContactSearch:
 
 
 def count_native(part: NativePart, X_WT: np.ndarray, V_WT: np.ndarray) -> float:
-    """Returns the mean number of instructions of query, clusters and wrench in a tick.
+    """Returns the mean instructions of query, clusters and wrench in a tick.
 
     The tool has n poses (n, 7) and velocities (n, 6). The count of the same calls far
     from all objects is subtracted: that of Python, the binding and the start of the
-    program. The first tick, which finds the first contacts, is included.
-
-    Raises:
-        subprocess.CalledProcessError: The program failed.
-        RuntimeError: valgrind counted nothing.
+    program. The first tick, which finds the first contacts, is included. Raises the
+    errors of `count_instructions`.
     """
     far = X_WT + _FAR_M * np.eye(7)[4]
     near, base = (count_with_data(__name__, (part, X, V_WT)) for X in (X_WT, far))
@@ -149,7 +138,7 @@ def count_native(part: NativePart, X_WT: np.ndarray, V_WT: np.ndarray) -> float:
 def main() -> None:
     """Moves the tool along the motion in a file, counting."""
     part, X_WT, V_WT = read_data()
-    search, cluster = part.make_search(), part.make_clustering()
+    search, cluster = ContactSearch(part), part.make_clustering()
     force = part.make_force()
     with counted():
         for X, V in zip(X_WT, V_WT, strict=True):

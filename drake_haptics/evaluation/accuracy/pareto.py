@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
 from drake_haptics.evaluation.accuracy.setting import is_comparable
 
-# Smaller errors cannot be felt and count as equal.
-ERROR_FLOOR_N = 1e-3
 # Least distance of a knee below its chord, in a front scaled to a unit square.
 _LEAST_DEPTH = 0.1
 # A front whose times differ by less, as runs of one setting do, has no knee.
@@ -24,8 +22,7 @@ class Front:
     Attributes:
         rows: Measured rows, cheapest and least accurate first.
         knees: Rows beyond which accuracy becomes expensive, in the same order.
-        bend: Row where the front bends most towards the corner, which is the first knee
-            if there is one; None if `find_bend` returns None.
+        bend: Row of `find_bend`, if there is one.
     """
 
     rows: tuple[Row, ...]
@@ -33,40 +30,18 @@ class Front:
     bend: Row | None
 
 
-def get_native_us(row: Row) -> float:
-    """Returns the median of a measured row's time inside the core, µs."""
-    if row.cost is None:
-        raise ValueError(f"{row.setting.label} was not measured: {row.failure_reason}")
-    return row.cost.native.median_us
-
-
-def get_tick_us(row: Row) -> float:
-    """Returns the median of a measured row's whole tick, µs."""
-    if row.cost is None:
-        raise ValueError(f"{row.setting.label} was not measured: {row.failure_reason}")
-    return row.cost.tick.median_us
-
-
-def get_force_error_N(row: Row) -> float:
-    """Returns a measured row's force error, root mean square, at least the floor, N."""
-    if row.errors is None:
-        raise ValueError(f"{row.setting.label} was not measured: {row.failure_reason}")
-    return max(row.errors.force_rms_N, ERROR_FLOOR_N)
-
-
 def find_front(study: AccuracyStudy) -> Front:
-    """Finds the front of the rows that were measured, by their time inside the core.
+    """Finds the front of the rows of a study, by their time inside the core.
 
-    Args:
-        study: Study to search. Rows that were not measured, or whose figure is not an
-            error (see `is_comparable`), are left out.
+    Rows that were not measured, or whose figure is not an error (see `is_comparable`),
+    are left out.
     """
     rows = [
         row
         for row in study.rows
-        if row.cost and row.errors and (row.is_scene or is_comparable(row.setting))
+        if row.is_measured and (row.is_scene or is_comparable(row.setting))
     ]
-    points = [(get_native_us(row), get_force_error_N(row)) for row in rows]
+    points = [(row.native_us, row.force_error_N) for row in rows]
     front = find_front_points(points)
     ends = [points[i] for i in front]
     bend = find_bend(ends)
@@ -80,8 +55,7 @@ def find_front(study: AccuracyStudy) -> Front:
 def find_front_points(points: Sequence[tuple[float, float]]) -> list[int]:
     """Returns the indices of the points that no other one beats, by time.
 
-    Args:
-        points: Times and errors, in any unit. The first of equal points is returned.
+    Points are times and errors, in any unit. The first of equal points is returned.
     """
     front: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: (*points[i], i)):
@@ -91,19 +65,16 @@ def find_front_points(points: Sequence[tuple[float, float]]) -> list[int]:
 
 
 def find_knee_points(front: Sequence[tuple[float, float]]) -> list[int]:
-    """Returns the indices of the knees of a front.
+    """Returns the indices of the knees of a front, in order of time.
 
     Time is linear and error logarithmic, to show what a tenth of the error costs. The
     front is scaled to a square of side 1. The first knee is the point farthest below
     the straight line between the ends (Satopää et al. 2011), if it is at least a tenth
     below; further ones are found likewise on each side of it (Douglas and Peucker
-    1973). The units of the axes do not matter.
+    1973). The units of the axes do not matter. There is none if all times are alike.
 
     Args:
         front: Positive times and errors, time rising and error falling.
-
-    Returns:
-        Indices in order of time; empty if all times are alike.
     """
     if len(front) < 3 or front[-1][0] < _LEAST_SPAN * front[0][0]:
         return []
@@ -126,11 +97,8 @@ def find_bend(front: Sequence[tuple[float, float]]) -> int | None:
     """Returns the index of the point where a front bends most towards the corner.
 
     It is the first knee, if there is one; a front that is nearly straight has a bend
-    and no knee.
-
-    Returns:
-        The index; None for fewer than three points, or if no point is below the line
-        between the ends.
+    and no knee. It is None for fewer than three points, or if no point is below the
+    line between the ends.
     """
     if len(front) < 3 or front[-1][0] <= front[0][0]:
         return None

@@ -9,13 +9,13 @@ from itertools import cycle
 from typing import TYPE_CHECKING
 
 from drake_haptics.common.colors import FRONT, INKS, OTHER_MODEL, Color
-from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, PeerRow, Row
-from drake_haptics.evaluation.accuracy.pareto import (
+from drake_haptics.evaluation.accuracy.figures import (
     ERROR_FLOOR_N,
-    find_front,
-    get_force_error_N,
-    get_native_us,
+    AccuracyStudy,
+    PeerRow,
+    Row,
 )
+from drake_haptics.evaluation.accuracy.pareto import find_front
 from drake_haptics.evaluation.accuracy.report import (
     describe_machine,
     format_N,
@@ -85,15 +85,14 @@ def draw_study(study: AccuracyStudy) -> Figure:
 
 
 def _label_setting(row: Row, is_knee: bool) -> Label:
-    """Returns the label of a notable setting."""
     words = _describe_setting(row, is_knee)
-    error_N = get_force_error_N(row)
-    return Label(get_native_us(row), error_N, words, FRONT, is_framed=True)
+    error_N = row.force_error_N
+    return Label(row.native_us, error_N, words, FRONT, is_framed=True)
 
 
 def _label_knob(knob: _Knob, axes: Axes) -> Label:
     """Returns the label of a knob, where its line is farthest from the scene."""
-    points = [(get_native_us(row), get_force_error_N(row)) for row in knob.rows]
+    points = [(row.native_us, row.force_error_N) for row in knob.rows]
     pixels = axes.transData.transform(points)
     own = [pixels[i] for i, row in enumerate(knob.rows) if row.is_scene]
     far = [min((math.dist(x, scene) for scene in own), default=0.0) for x in pixels]
@@ -104,14 +103,10 @@ def _label_knob(knob: _Knob, axes: Axes) -> Label:
 
 @dataclass(frozen=True)
 class _Knob:
-    """A knob in the plot.
+    """A knob in the plot, with its measured rows.
 
-    Attributes:
-        name: Name of the knob.
-        rows: Measured rows, at least one of which is not the unchanged scene.
-        marker: Marker of its points, a name of Matplotlib's.
-        color: Color of its points, one for all knobs whose figures are not errors.
-        alpha: Opacity of its points, lower for those knobs.
+    At least one is not the unchanged scene. All knobs whose figures are not errors have
+    one color, and are pale.
     """
 
     name: str
@@ -122,11 +117,10 @@ class _Knob:
 
 
 def _find_knobs(study: AccuracyStudy) -> list[_Knob]:
-    """Returns the knobs that are drawn."""
     inks = cycle(INKS)
     knobs = []
     for marker, (name, group) in zip(cycle(_MARKERS), group_rows(study), strict=False):
-        rows = [row for row in group if row.cost and row.errors]
+        rows = [row for row in group if row.is_measured]
         if rows and not all(row.is_scene for row in group):
             is_error = all(map(_is_on_a_par, group))
             look = (next(inks), 1.0) if is_error else (OTHER_MODEL, _PALE)
@@ -138,7 +132,7 @@ def _draw_rows(study: AccuracyStudy, axes: Axes) -> None:
     """Draws all rows, the front behind them and the scene as a star above them."""
     axes.set_yscale("log")
     for knob in _find_knobs(study):
-        points = [(get_native_us(row), get_force_error_N(row)) for row in knob.rows]
+        points = [(row.native_us, row.force_error_N) for row in knob.rows]
         axes.plot(
             *zip(*sorted(points), strict=True),
             knob.marker + ":",
@@ -150,8 +144,8 @@ def _draw_rows(study: AccuracyStudy, axes: Axes) -> None:
         )
     front = find_front(study)
     axes.step(
-        [get_native_us(row) for row in front.rows],
-        [get_force_error_N(row) for row in front.rows],
+        [row.native_us for row in front.rows],
+        [row.force_error_N for row in front.rows],
         where="post",
         color=FRONT,
         linewidth=1.8,
@@ -159,14 +153,14 @@ def _draw_rows(study: AccuracyStudy, axes: Axes) -> None:
         zorder=2,
     )
     for row in _take_reference(study):
-        axes.plot(get_native_us(row), get_force_error_N(row), "s", markersize=15,
+        axes.plot(row.native_us, row.force_error_N, "s", markersize=15,
                   markerfacecolor="none", markeredgecolor="black", label="reference",
                   zorder=4)  # fmt: skip
     for row in _take_scene(study):
-        is_exact = get_force_error_N(row) == ERROR_FLOOR_N
+        is_exact = row.force_error_N == ERROR_FLOOR_N
         axes.plot(
-            get_native_us(row),
-            get_force_error_N(row),
+            row.native_us,
+            row.force_error_N,
             "*",
             markersize=20,
             markerfacecolor="black",
@@ -182,11 +176,10 @@ def _is_on_a_par(row: Row) -> bool:
 
 
 def _take_scene(study: AccuracyStudy) -> list[Row]:
-    return [row for row in study.rows if row.is_scene and row.cost and row.errors][:1]
+    return [row for row in study.rows if row.is_scene and row.is_measured][:1]
 
 
 def _take_reference(study: AccuracyStudy) -> list[Row]:
-    """Returns the reference's row, if it is one of the rows."""
     return [
         row
         for row in study.rows
@@ -223,7 +216,6 @@ def _name_peer(peer: PeerRow) -> str:
 
 
 def _describe_setting(row: Row, is_knee: bool) -> str:
-    """Returns the text for a notable setting."""
     assert row.errors is not None
     knob = f"knee: {row.setting.knob}" if is_knee else row.setting.knob
     return f"{knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"

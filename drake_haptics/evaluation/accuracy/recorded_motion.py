@@ -52,11 +52,7 @@ class RecordedMotion:
         return self.period_s * np.arange(len(self))
 
     def find_ticks(self, period_s: float) -> list[tuple[int, int]]:
-        """Returns the rows of this motion at which a loop has new ticks.
-
-        Returns:
-            Each such row, with the number of the loop's last tick up to it.
-        """
+        """Returns the rows at which a loop has a new tick, each with its number."""
         numbers = (self.times_s / period_s + _SAME_TICK).astype(int)
         rows = np.flatnonzero(np.diff(numbers, prepend=-1))
         return list(zip(rows.tolist(), numbers[rows].tolist(), strict=True))
@@ -87,15 +83,12 @@ def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:
 def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMotion:
     """Runs a scene in its simulated hand and records how handle and tool move.
 
-    Args:
-        scene: Scene to run. The same scene gives the same motion, bit for bit.
-        duration_s: Simulated time, s. Defaults to that of `choose_duration`.
+    The same scene gives the same motion, bit for bit. The duration defaults to that of
+    `choose_duration`.
 
     Raises:
-        SceneError: The scene cannot be built.
-        MeshError: A mesh cannot be used.
-        drake_haptics.simulation.run.RunError: The loop diverges.
-        KeyboardInterrupt: Ctrl-C is pressed.
+        SceneError, MeshError: The scene cannot be built.
+        RunError: The loop diverges.
     """
     if duration_s is None:
         duration_s = choose_duration(scene)
@@ -125,8 +118,8 @@ class ToolReplay:
     Attributes:
         F_To_W: (n, 6) wrench [τ; f] at the tool's origin in the world, N·m and N: of
             contact and of all effects that push the tool.
-        distance: (n,) distance of the deepest contact, m; infinite if no contact is
-            nearer than the scene's tolerance.
+        distance: (n,) distance of the deepest contact, m; infinite beyond the
+            tolerance.
     """
 
     F_To_W: np.ndarray
@@ -141,8 +134,7 @@ def replay_tool(scene: Scene, motion: RecordedMotion) -> ToolReplay:
     motion without a tick of the scene, the last wrench is held, as in the loop.
 
     Raises:
-        SceneError: The scene cannot be built.
-        MeshError: A mesh cannot be used.
+        SceneError, MeshError: The scene cannot be built.
     """
     site = find_device_site(scene)
     device = HapticDevice(

@@ -7,18 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from drake_haptics.evaluation.accuracy.figures import (
+    ERROR_FLOOR_N,
     NOT_SOUGHT,
     AccuracyStudy,
     Errors,
     Row,
 )
-from drake_haptics.evaluation.accuracy.pareto import (
-    ERROR_FLOOR_N,
-    find_front,
-    get_force_error_N,
-    get_native_us,
-    get_tick_us,
-)
+from drake_haptics.evaluation.accuracy.pareto import find_front
 from drake_haptics.evaluation.accuracy.setting import find_model_change
 from drake_haptics.evaluation.measuring.timing import TickTimes, name_machine
 
@@ -37,11 +32,8 @@ _ROUND = 0.05
 class Column:
     """A column of the table.
 
-    Attributes:
-        head: Short heading.
-        unit: Unit of its figures.
-        meaning: Sentence that explains the figures.
-        parts: Names of the figures of one cell, if it has two.
+    `meaning` is a sentence that explains the figures; `parts` names the two figures of
+    one cell.
     """
 
     head: str
@@ -205,7 +197,7 @@ def describe_knees(study: AccuracyStudy) -> list[str]:
     for before, knee, after in zip(stops, stops[1:], stops[2:], strict=False):
         share = ""
         if scene is not None and not knee.is_scene:
-            ratio = get_native_us(knee) / get_native_us(scene)
+            ratio = knee.native_us / scene.native_us
             share = f", {_describe_ratio(ratio)} the scene's time there"
         sentences.append(
             f"{name_setting(knee)}: {_describe_price(knee)}{share}. Up to it a tenth"
@@ -281,10 +273,9 @@ def describe_machine(study: AccuracyStudy) -> str:
 
 
 def _advise(study: AccuracyStudy, scene: Row) -> str:
-    """Returns one sentence of advice on a setting."""
     better = _find_better(study, scene)
     if better is not None:
-        is_more = get_force_error_N(better) < get_force_error_N(scene)
+        is_more = better.force_error_N < scene.force_error_N
         return (
             f"Take {name_setting(better)}, which is faster and"
             f" {'more' if is_more else 'as'} exact: {_describe_price(better)}."
@@ -303,7 +294,7 @@ def _advise(study: AccuracyStudy, scene: Row) -> str:
 
 def _is_faster(row: Row, scene: Row) -> bool:
     """Returns whether a row's saving in the core is notable in the scene's tick."""
-    return get_native_us(scene) - get_native_us(row) > _WORTH * get_tick_us(scene)
+    return scene.native_us - row.native_us > _WORTH * scene.tick_us
 
 
 def _find_better(study: AccuracyStudy, scene: Row) -> Row | None:
@@ -311,13 +302,12 @@ def _find_better(study: AccuracyStudy, scene: Row) -> Row | None:
     better = [
         row
         for row in study.rows
-        if row.cost is not None
-        and row.errors is not None
+        if row.is_measured
         and not find_model_change(row.setting)
         and _is_faster(row, scene)
-        and get_force_error_N(row) <= get_force_error_N(scene)
+        and row.force_error_N <= scene.force_error_N
     ]
-    return min(better, key=get_native_us, default=None)
+    return min(better, key=lambda row: row.native_us, default=None)
 
 
 def _describe_price(row: Row) -> str:
@@ -338,5 +328,5 @@ def _describe_ratio(ratio: float) -> str:
 
 def _price_of_tenth(cheap: Row, dear: Row) -> str:
     """Returns the time per tenfold reduction of the error between two rows, µs."""
-    decades = math.log10(get_force_error_N(cheap) / get_force_error_N(dear))
-    return format_us((get_native_us(dear) - get_native_us(cheap)) / decades)
+    decades = math.log10(cheap.force_error_N / dear.force_error_N)
+    return format_us((dear.native_us - cheap.native_us) / decades)

@@ -33,9 +33,9 @@ class Setting:
     """One value of one knob, or a choice of several.
 
     Attributes:
-        knob: Name of the knob by keys of the scene file, such as `contact.tolerance_m`.
+        knob: Keys of the scene file, such as `contact.tolerance_m`.
         label: Value with its unit, such as "1 mm".
-        changes: Keys of the scene and their values; see `change_values`. Empty for the
+        changes: Keys of the scene and their values, see `change_values`; empty for the
             unchanged scene.
     """
 

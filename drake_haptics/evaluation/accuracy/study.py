@@ -14,6 +14,7 @@ from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.study import run_study
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.progress import Progress, ignore_progress
 from drake_haptics.evaluation.accuracy.closed_loop import (
     PressedPlace,
     StableStiffness,
@@ -59,7 +60,6 @@ from drake_haptics.scene.schema import Scene
 # not scatter.
 _COUNTED_TICKS = 500
 Task = dict[str, Any]
-Progress = Callable[[str, float], None]
 # Longest motion of a quick study, s.
 _QUICK_S = 1.0
 # Shares of all work at the beginning of these steps.
@@ -72,8 +72,8 @@ _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 class Measurement:
     """Measures one quantity of a setting, as a task of `run_study`.
 
-    The place at which the scene's hand stops is for the stable stiffness; None if that
-    is not sought.
+    The scene's hand stops at the place for the stable stiffness, which is not sought if
+    there is none.
     """
 
     scene: Scene
@@ -82,11 +82,9 @@ class Measurement:
     place: PressedPlace | None
 
     def __call__(self, task: dict[str, Any]) -> dict[str, Any]:
-        """Returns the result, or the reason for its failure.
+        """Returns the result of a task of `make_task`, or the reason for its failure.
 
-        Args:
-            task: Task with `what` ("errors", "instructions", "native" or "ticks") and
-                the `setting`; for times also with the machine.
+        The quantities are "errors", "instructions", "native" and "ticks".
         """
         scene = Setting.from_dict(task["setting"]).apply(self.scene)
         measure = getattr(self, f"_measure_{task['what']}")
@@ -207,10 +205,10 @@ def _find_times(
 def _make_progress(
     stage: str, shares: tuple[float, float], report: Progress
 ) -> Callable[[int, int], None]:
-    """Returns a function that reports the progress of a stage's tasks and of all work.
+    """Returns a function that reports a stage's tasks, and the share of all work.
 
-    The shares of all work are those that are done when the stage begins and ends. After
-    the first task it estimates the remaining time.
+    The shares are those that are done when the stage begins and ends. After the first
+    task it estimates the remaining time.
     """
     begin, end = shares
     steps: list[tuple[float, int]] = []
@@ -237,7 +235,7 @@ def run_accuracy_study(
     settings: Sequence[Setting] | None = None,
     executor: Executor | None = None,
     store: str | os.PathLike[str] | None = None,
-    progress: Progress | None = None,
+    progress: Progress = ignore_progress,
     quick: bool = False,
     count_instructions: bool = False,
 ) -> AccuracyStudy:
@@ -251,29 +249,24 @@ def run_accuracy_study(
         name: Name of the scene, for the report.
         settings: Settings to measure besides the unchanged scene. Defaults to those of
             all knobs.
-        executor: Executor that computes the errors; see
-            `drake_haptics.analysis.jobs.study.run_study`.
+        executor: Executor that computes the errors; see `run_study`.
         store: File that stores each result; a call with the same scene and file
             resumes.
-        progress: Function that is called with the current work and the share done, from
-            0 to 1.
+        progress: Shows the progress.
         quick: Whether to measure one setting per knob on a short motion, without stable
             stiffnesses.
         count_instructions: Whether to count the core's instructions with valgrind, in
-            the 500 ticks with the most contact, which takes some ten seconds for each
-            setting.
+            the 500 ticks with the most contact: some ten seconds for each setting.
 
     Raises:
-        HapticsError: `count_instructions` is set, but valgrind is not installed.
+        HapticsError: Instructions are counted, but valgrind is not installed.
         SceneError: The scene cannot be built, or is not under the penalty law.
-        drake_haptics.simulation.run.RunError: The unchanged scene diverges.
-        KeyboardInterrupt: Ctrl-C is pressed; finished results are in the store.
+        RunError: The unchanged scene diverges.
     """
-    report = progress or (lambda what, share: None)
     require_penalty(scene.contact, "errors and knobs are")
     if count_instructions:
         require_valgrind()
-    measurement = _prepare(scene, report, quick)
+    measurement = _prepare(scene, progress, quick)
     if settings is None:
         settings = list_few_settings(scene) if quick else list_settings(scene)
     settings = [AS_IT_IS, *(setting for setting in settings if setting != AS_IT_IS)]
@@ -295,7 +288,7 @@ def run_accuracy_study(
             tasks,
             executor=of_stage,
             store=store,
-            progress=_make_progress(stage, shares, report),
+            progress=_make_progress(stage, shares, progress),
         )
         done += zip(tasks, results, strict=True)
     return AccuracyStudy(

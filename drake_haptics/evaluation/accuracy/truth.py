@@ -37,8 +37,7 @@ def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
         X_WT: (n, 7) poses of the tool, m.
 
     Returns:
-        (n,) distances, m, negative if a pair penetrates; infinite beyond the contact's
-        tolerance.
+        (n,) distances, m; infinite beyond the contact's tolerance.
     """
     tolerance_m = haptic.scene.contact.tolerance_m
     R_WT = _read_rotations(X_WT).as_matrix()
@@ -83,8 +82,8 @@ class Truth:
     """The reference's wrench and the exact depth at n ticks of a motion.
 
     Attributes:
-        F_Tcm_W: (n, 6) wrench [τ; f] at the tool's center of mass in the world, N·m
-            and N.
+        F_Tcm_W: (n, 6) wrench [τ; f] at the tool's center of mass in the world, N·m and
+            N.
         p_TTcm: (3,) the center of mass in the tool's frame, m.
         distance: (n,) exact distance of the deepest pair of pieces, m; infinite beyond
             the tolerance.
@@ -102,11 +101,7 @@ class Truth:
         return int(np.isfinite(self.distance).sum())
 
     def find_busiest(self, num_ticks: int) -> tuple[int, int]:
-        """Returns first and end of the interval of ticks with the most contact.
-
-        Args:
-            num_ticks: Length of the interval; all ticks if there are fewer.
-        """
+        """Returns first and end of the `num_ticks` (or fewer) with the most contact."""
         num_ticks = min(num_ticks, len(self.distance))
         touched = np.concatenate([[0], np.cumsum(np.isfinite(self.distance))])
         first = int((touched[num_ticks:] - touched[:-num_ticks]).argmax())
@@ -131,15 +126,14 @@ def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
 
 
 def shift_wrench(F_To_W: np.ndarray, X_WT: np.ndarray, p_TP: np.ndarray) -> np.ndarray:
-    """Returns wrenches on the tool at another point.
+    """Returns wrenches (n, 6) on the tool at another point P.
+
+    The force is the same, and τ_P = τ - p × f.
 
     Args:
         F_To_W: (n, 6) wrenches [τ; f] at the tool's origin in the world.
         X_WT: (n, 7) poses of the tool.
         p_TP: (3,) the point in the tool's frame, m.
-
-    Returns:
-        (n, 6) [τ; f] at P: the force is the same, τ_P = τ - p × f.
     """
     torque, force = np.split(F_To_W, 2, axis=1)
     p_TP_W = _read_rotations(X_WT).apply(p_TP)
@@ -147,15 +141,13 @@ def shift_wrench(F_To_W: np.ndarray, X_WT: np.ndarray, p_TP: np.ndarray) -> np.n
 
 
 def _read_rotations(X_WT: np.ndarray) -> Rotation:
-    """Returns the rotations of poses (n, 7)."""
     return Rotation.from_quat(np.roll(X_WT[:, :4], -1, axis=1))
 
 
 def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Errors:
     """Replays a motion in a scene and compares its answers with the truth.
 
-    Returns:
-        The errors, without those of the closed loop: energy is NaN, stiffness None.
+    The errors lack those of the closed loop: energy is NaN, stiffness None.
     """
     replay = replay_tool(scene, motion)
     F_Tcm_W = shift_wrench(replay.F_To_W, motion.X_WT, truth.p_TTcm)
@@ -165,14 +157,15 @@ def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Err
 def compare(
     F_Tcm_W: np.ndarray, distance: np.ndarray, tolerance_m: float, truth: Truth
 ) -> Errors:
-    """Compares wrenches and distances from any source with the truth.
+    """Compares wrenches and distances from any source with the truth at n ticks.
+
+    Depths are compared up to the lesser of the two tolerances.
 
     Args:
         F_Tcm_W: (n, 6) wrench [τ; f] at the truth's center of mass, N·m and N.
         distance: (n,) distance of the deepest contact, m; infinite without a contact.
-        tolerance_m: Distance up to which contacts were found, m. Depths are compared up
-            to the lesser of this and the truth's.
-        truth: Truth at the same n ticks.
+        tolerance_m: Distance up to which contacts were found, m.
+        truth: Truth at the same ticks.
     """
     error = np.linalg.norm((F_Tcm_W - truth.F_Tcm_W).reshape(-1, 2, 3), axis=2)
     rms, largest = np.sqrt((error**2).mean(axis=0)), error.max(axis=0)

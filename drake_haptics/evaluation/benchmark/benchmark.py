@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from drake_haptics.common.progress import Progress, ignore_progress
 from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, loop_tables
 from drake_haptics.evaluation.benchmark.outside_library import (
     OutsideLibrary,
@@ -46,8 +47,6 @@ from drake_haptics.report.page import Table
 from drake_haptics.report.plain_data import read_figures, to_plain_data
 
 PARTS = ("pairs", "python", "scenes", "loop")
-# Function that is called with the current work and the share of the part done.
-Progress = Callable[[str, float], None]
 _LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
 
@@ -83,10 +82,8 @@ QUICK = Effort(
 class BenchFigures:
     """All figures of a run, grouped by pair and scene.
 
-    Attributes:
-        machine: Machine of the times; see `describe_machine`.
-        libraries: Name -> version of libraries that were measured on pairs or in loops.
-        missing: Name -> reason why a library was not measured.
+    Libraries that were measured have a version, the others a reason. The machine is
+    that of `describe_machine`.
     """
 
     machine: dict[str, Any]
@@ -111,7 +108,7 @@ def run_benchmarks(
     parts: Collection[str] = PARTS,
     effort: Effort = Effort(),
     meshes: Path | None = None,
-    progress: Progress = lambda what, share: None,
+    progress: Progress = ignore_progress,
     outside: Sequence[type[OutsideLibrary]] = (),
 ) -> BenchFigures:
     """Measures this package and installed libraries in this thread.
@@ -122,14 +119,15 @@ def run_benchmarks(
     makers = scene_makers(effort.motions, meshes)  # first, as it checks the folder
     figures = BenchFigures(machine=describe_machine())
     figures.libraries.update({library.name: library.version for library in outside})
-    if "pairs" in parts:
-        _run_pairs(figures, effort, progress, outside)
-    if "python" in parts:
-        _run_python(figures, effort, progress, outside)
-    if "scenes" in parts:
-        _run_scenes(figures, effort, makers, progress, outside)
-    if "loop" in parts:
-        _run_loop(figures, effort, progress, outside)
+    run: dict[str, Callable[..., None]] = {
+        "pairs": _run_pairs,
+        "python": _run_python,
+        "scenes": partial(_run_scenes, makers),
+        "loop": _run_loop,
+    }
+    for part in PARTS:
+        if part in parts:
+            run[part](figures, effort, progress, outside)
     return figures
 
 
@@ -168,9 +166,9 @@ def _run_python(
 
 
 def _run_scenes(
+    makers: Mapping[str, Callable[[], SceneProblem]],
     figures: BenchFigures,
     effort: Effort,
-    makers: Mapping[str, Callable[[], SceneProblem]],
     progress: Progress,
     outside: Sequence[type[OutsideLibrary]],
 ) -> None:

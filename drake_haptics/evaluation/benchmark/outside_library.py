@@ -112,8 +112,6 @@ def make_pair_library(library: type[OutsideLibrary]) -> PairLibrary:
 
 
 class _OutsidePair:
-    """One pair, timed in Python."""
-
     def __init__(self, library: type[OutsideLibrary], pair: PairShape):
         self._make = partial(library, pair.A_vertices, pair.B_vertices)
 

@@ -35,10 +35,9 @@ class PairQuery(Protocol):
     """One pair in one library, ready to be queried."""
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
-        """Forgets earlier queries, then answers each pose of A in order.
+        """Forgets earlier queries, then answers each pose (n, 4, 4) of A in order.
 
-        Args:
-            X_WA: (n, 4, 4) poses of A; B is at the world's origin.
+        B is at the world's origin.
         """
         ...
 
@@ -70,17 +69,17 @@ def ask_each(
 
 
 def normals_between(
-    p_WCa: np.ndarray, p_WCb: np.ndarray, distance: np.ndarray
+    p_WCa: np.ndarray, p_WCb: np.ndarray, distance: np.ndarray | float
 ) -> np.ndarray:
-    """Returns (n, 3) nhat_BA_W for libraries that only give witness points.
+    """Returns nhat_BA_W (..., 3) for libraries that only give witness points.
 
     Args:
-        p_WCa: (n, 3) witness points on A, m.
-        p_WCb: (n, 3) witness points on B, m.
-        distance: (n,) signed distances, m. If the points coincide the normal is NaN.
+        p_WCa: (..., 3) witness points on A, m.
+        p_WCb: (..., 3) witness points on B, m.
+        distance: (...) signed distances, m. If the points coincide the normal is NaN.
     """
-    along = np.copysign(1.0, distance)[:, None] * (p_WCa - p_WCb)
-    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.copysign(1.0, distance)[..., None] * (p_WCa - p_WCb)
+    length = np.linalg.norm(along, axis=-1, keepdims=True)
     return np.divide(along, length, out=np.full_like(along, np.nan), where=length > 0)
 
 

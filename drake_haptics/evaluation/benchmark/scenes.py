@@ -142,13 +142,10 @@ def _size(body: Decomposition) -> float:
 def scene_makers(
     motions: int, meshes: Path | None = None
 ) -> dict[str, Callable[[], SceneProblem]]:
-    """Returns scene name -> a function that makes it.
+    """Returns scene name -> a function that makes it, each with a number of motions.
 
-    Args:
-        motions: Number of motions of each scene.
-        meshes: Folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
-            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); missing ones are
-            replaced by the package's shapes, except the armadillo.
+    Real meshes (see `MODELS`) that are missing in the folder are replaced by the
+    package's shapes, except the armadillo.
 
     Raises:
         HapticsError: The folder has none of them.

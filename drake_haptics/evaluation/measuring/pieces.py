@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
 import numpy as np
@@ -39,15 +39,7 @@ def register_pieces(
     decomposition: Decomposition,
     surface: ProximityProperties,
 ) -> None:
-    """Adds each piece to a body, including flat ones.
-
-    Args:
-        plant: Plant that is not yet finalized.
-        body: Body of the plant.
-        X_BP: Pose of the pieces in the body's frame.
-        decomposition: The pieces.
-        surface: Contact material of the pieces.
-    """
+    """Adds each piece to a body of a plant, including flat ones."""
     for piece in decomposition.pieces:
         name = f"piece_{len(plant.GetCollisionGeometriesForBody(body))}"
         shape = Convex(points=piece.vertices.T, label=name)
@@ -79,12 +71,9 @@ def make_surface(
 
 @contextmanager
 def quiet_streams(*streams: int) -> Iterator[None]:
-    """Discards output of its block to streams of the process.
+    """Discards output of its block to streams of the process, 1 or 2 or both.
 
     It keeps libraries from writing over a progress bar.
-
-    Args:
-        streams: Numbers of the streams: 1 for standard output, 2 for standard error.
     """
     sys.stderr.flush()
     kept = [os.dup(stream) for stream in streams]
@@ -116,6 +105,24 @@ def mesh_geoms(name: str, decomposition: Decomposition, attributes: str) -> str:
     return "\n".join(
         f'<geom type="mesh" mesh="{name}_{k}" {attributes}/>'
         for k in range(len(decomposition.pieces))
+    )
+
+
+def mesh_bodies(
+    parts: Mapping[str, Decomposition], X_WO: Iterable[np.ndarray], attributes: str
+) -> str:
+    """Returns a body with `mesh_geoms` for each named object at rest.
+
+    Args:
+        parts: Objects by the names of their meshes.
+        X_WO: (7,) pose of each object, [qw qx qy qz x y z], m.
+        attributes: Attributes of the geoms, which the tool may touch.
+    """
+    return "\n".join(
+        f'<body pos="{listed(X[4:])}" quat="{listed(X[:4])}">'
+        + mesh_geoms(name, part, f'contype="1" conaffinity="0" {attributes}')
+        + "</body>"
+        for (name, part), X in zip(parts.items(), X_WO, strict=True)
     )
 
 

@@ -40,7 +40,6 @@ class CallTimer:
     """
 
     def __init__(self, function: Callable[..., Any], trivial: tuple[Any, ...]):
-        """Times the function with trivial arguments."""
         self._function = function
         self._trivial_s = 0.0
         costs = [self.call(trivial)[1] for _ in range(_TRIVIAL_CALLS)]
@@ -74,16 +73,10 @@ class TickTimes:
 
 
 def typical(seconds: np.ndarray) -> np.ndarray:
-    """Returns the undisturbed time of each frame.
+    """Returns the undisturbed times (n,) of frames, s, from repeats (repeats, n).
 
-    It is the mean of the middle half of the repeats, which drops interruptions and
+    Each is the mean of the middle half of its repeats, which drops interruptions and
     averages over the clock's resolution, a tenth of a fast query.
-
-    Args:
-        seconds: (repeats, n) times of the same frames, s.
-
-    Returns:
-        (n,) times, s.
     """
     ordered = np.sort(seconds, axis=0)
     edge = (len(ordered) + 1) // 4
@@ -131,7 +124,6 @@ def name_machine(machine: Mapping[str, str | int]) -> str:
 
 
 def _processor() -> str:
-    """Returns the processor's name, or "unknown"."""
     info = Path("/proc/cpuinfo")
     if info.exists():
         for line in info.read_text(encoding="utf-8").splitlines():

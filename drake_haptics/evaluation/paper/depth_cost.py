@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
+from drake_haptics.common.progress import Progress
 from drake_haptics.evaluation.benchmark.pairs import RADIUS_M, PairShape, make_presses
 from drake_haptics.evaluation.measuring.timing import clock_interval, typical
 from drake_haptics.evaluation.measuring.valgrind import (
@@ -38,17 +39,13 @@ def count_depths(
     """Counts the instructions of each query of a motion, by valgrind.
 
     The count for a pair of distant points is subtracted: that of switching the count,
-    checking poses and reading the clock.
+    checking poses and reading the clock. Errors are those of `count_with_data`.
 
     Args:
         motions: Pairs and the poses X_WA (n, 4, 4) of A, by number.
 
     Returns:
         Mean per warm query, by the same number; None without valgrind.
-
-    Raises:
-        subprocess.CalledProcessError: The program failed. RuntimeError: valgrind
-        counted nothing.
     """
     if shutil.which("valgrind") is None:
         return None
@@ -118,15 +115,12 @@ class DepthCosts:
 
 
 def measure_depth_costs(
-    presses: int, with_instructions: bool, progress: Callable[[str, float], None]
+    presses: int, with_instructions: bool, progress: Progress
 ) -> DepthCosts:
     """Measures warm depth queries of pairs of round bodies.
 
-    Args:
-        presses: Number of presses of each pair, from outside to 20 % deep and back at a
-            hand's speed.
-        with_instructions: Whether to count instructions, if valgrind is installed.
-        progress: Callback that takes the current work and the share done, in [0, 1].
+    Each press of a pair is from outside to 20 % deep and back at a hand's speed.
+    Instructions are counted if that is wanted and valgrind is installed.
     """
     rows, motions = [], {}
     for k, triangles in enumerate(TRIANGLES):
@@ -154,10 +148,8 @@ def measure_depth_costs(
 def make_balls(triangles: int) -> PairShape:
     """Returns two balls with a number of triangles, the second one slightly smaller.
 
-    Args:
-        triangles: Number of triangles of each ball, even and at least 4: the hull of n
-            vertices on a spiral around a sphere has 2 n - 4 triangles, none of them
-            coplanar.
+    The number is even and at least 4: the hull of n vertices on a spiral around a
+    sphere has 2 n - 4 triangles, none of them coplanar.
     """
     count = triangles // 2 + 2
     height = 1.0 - (2.0 * np.arange(count) + 1.0) / count

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from drake_haptics.common.progress import Progress, ignore_progress
 from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.evaluation.models import check_folder
 from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
@@ -28,7 +29,6 @@ from drake_haptics.evaluation.paper.table1 import ModelFigures, measure_table1
 
 Part = Literal["table1", "figure11", "figure12", "analysis"]
 PARTS: tuple[Part, ...] = get_args(Part)
-Progress = Callable[[str, float], None]
 
 # Approximate relative durations of the parts, for progress.
 _WEIGHTS = {"table1": 1.0, "figure11": 6.0, "figure12": 1.0, "analysis": 3.0}
@@ -110,24 +110,17 @@ def evaluate_paper(
     parts: Sequence[Part] = PARTS,
     effort: Effort | None = None,
     meshes: Path | None = None,
-    progress: Progress | None = None,
+    progress: Progress = ignore_progress,
 ) -> PaperEvaluation:
-    """Repeats the paper's evaluation on this machine.
+    """Repeats parts of the paper's evaluation on this machine.
 
-    Args:
-        parts: Parts to measure. Defaults to all.
-        effort: Extent of the measurement. Defaults to `Effort()`.
-        meshes: Folder of real meshes (torus_2000.obj, cup_500.obj, spoon_336.obj,
-            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply), any of which may
-            be missing.
-        progress: Callback that takes the current work and the share done, in [0, 1].
+    Any of the real meshes in the folder (see `MODELS`) may be missing.
 
     Raises:
         HapticsError: The folder has none of them.
     """
     check_folder(meshes)
     effort = effort or Effort()
-    report = progress or (lambda what, share: None)
     chosen = [part for part in PARTS if part in parts]
     whole = sum(_WEIGHTS[part] for part in chosen)
     found: dict[Part, Any] = {}
@@ -137,7 +130,7 @@ def evaluate_paper(
         def show(
             what: str, share: float, part: Part = part, done: float = done
         ) -> None:
-            report(f"{part}: {what}", (done + share * _WEIGHTS[part]) / whole)
+            progress(f"{part}: {what}", (done + share * _WEIGHTS[part]) / whole)
 
         found[part] = _MEASURE[part](effort, meshes, show)
         done += _WEIGHTS[part]

@@ -178,10 +178,7 @@ def plan_pen_pass(seconds: float = _SECONDS) -> np.ndarray:
 def measure_pen_pass(divisions: int = 3, seconds: float = _SECONDS) -> PenPass:
     """Follows the contact of the package's pen with a sphere along a pass.
 
-    Args:
-        divisions: Number of subdivisions of an icosahedron that make the sphere; 3 for
-            the shipped one.
-        seconds: Duration of the pass, s.
+    The sphere is an icosahedron with a number of subdivisions; 3 is the shipped one.
     """
     pen = load_shape("pen")
     ball = trimesh.creation.icosphere(divisions, RADIUS_M)

@@ -80,10 +80,7 @@ def measure_profile(
 ) -> Profile:
     """Runs a scenario at 1 kHz of simulated time, as fast as possible.
 
-    Args:
-        scenario: Scenario to run.
-        seconds: Duration of the path to run, s. Defaults to all of it.
-        passes: Number of runs.
+    The duration defaults to that of the path, s.
     """
     duration_s = scenario.path.duration_s
     if seconds is not None:
@@ -300,7 +297,6 @@ def sum_up(profile: Profile) -> ProfileFigures:
 
 
 def _times_of(profile: Profile, which: np.ndarray) -> StateTimes:
-    """Returns the times of some ticks."""
     return StateTimes(
         ticks=int(which.sum()),
         query=TickTimes.of(profile.query_s[which]),
@@ -324,7 +320,6 @@ def _find_overhead(profile: Profile) -> float | None:
 
 
 def _fit_growth(profile: Profile) -> PowerFit | None:
-    """Returns `contact_growth`."""
     numbers, ticks = np.unique(profile.contacts, return_counts=True)
     numbers = numbers[(ticks >= _LEAST_TICKS) & (numbers > 0)]
     if len(numbers) < _LEAST_NUMBERS or numbers[-1] < _LEAST_SPAN * numbers[0]:

@@ -42,9 +42,8 @@ _X_OF_REAL = {
 def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
     """Returns scenario name -> a function that makes it, those of Figure 11 first.
 
-    Args:
-        meshes: Folder of real meshes; cup and spoon, the digestive system and the
-            armadillo are also explored if it has them.
+    Cup and spoon, the digestive system and the armadillo are also explored if the
+    folder has real meshes of them.
     """
     makers: dict[str, Callable[[], Scenario]] = {
         "spoon in cup": partial(_make_cup_spoon, None, "spoon in cup", "11-(a)"),
@@ -190,6 +189,5 @@ def _make_machine_room() -> Scenario:
 
 
 def _move(mesh: Mesh, X_OM: RigidTransform) -> Mesh:
-    """Returns a mesh in another frame."""
     vertices = mesh.vertices @ X_OM.rotation().matrix().T + X_OM.translation()
     return Mesh.from_arrays(vertices, mesh.triangles, name=mesh.report.source)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from drake_haptics.common.progress import Progress
 from drake_haptics.evaluation.models import find_sources, load_model
 from drake_haptics.evaluation.paper.published import TABLE_1
 from drake_haptics.geometry.decomposition.decompose import decompose
@@ -31,19 +32,12 @@ class ModelFigures:
     seconds: float = 0.0
 
 
-def measure_table1(
-    meshes: Path | None, progress: Callable[[str, float], None]
-) -> tuple[ModelFigures, ...]:
-    """Cuts each model of the paper's Table 1, or models like it.
+def measure_table1(meshes: Path | None, progress: Progress) -> tuple[ModelFigures, ...]:
+    """Cuts each model of the paper's Table 1, or models like it, in the paper's order.
 
-    Args:
-        meshes: Folder of real meshes; a model found there has a row below that of the
-            package's shape.
-        progress: Callback that takes the current work and the share done, in [0, 1].
-
-    Returns:
-        Rows in the paper's order. A model that is neither in the package nor in the
-        folder has one row with an empty source.
+    A model that is found in the folder of real meshes has a row below that of the
+    package's shape. One that is neither in the package nor in the folder has one row
+    with an empty source.
     """
     jobs = [
         (paper, source)
@@ -65,7 +59,6 @@ def measure_table1(
 def _cut(
     row: ModelFigures, source: str, meshes: Path | None, show: Callable[[float], None]
 ) -> ModelFigures:
-    """Returns a row with this package's figures."""
     mesh = load_model(row.model, source, meshes)
     report = decompose(mesh, progress=show).report
     names = (

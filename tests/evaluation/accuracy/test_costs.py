@@ -14,7 +14,7 @@ from drake_haptics.evaluation.accuracy.costs import (
     time_in_turns,
     time_native,
 )
-from drake_haptics.evaluation.accuracy.native_part import count_native
+from drake_haptics.evaluation.accuracy.native_part import ContactSearch, count_native
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion, replay_tool
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.study import list_timing_tasks
@@ -98,7 +98,7 @@ def test_the_native_part_gives_the_loops_wrench(clustering, changes):
     motion = _record(clustering)
     part = make_native_part(cached_build(scene))
     search, cluster, force = (
-        part.make_search(),
+        ContactSearch(part),
         part.make_clustering(),
         part.make_force(),
     )

@@ -5,14 +5,12 @@ import math
 import pytest
 from accuracy_samples import make_row, make_study
 
-from drake_haptics.evaluation.accuracy.figures import Row
+from drake_haptics.evaluation.accuracy.figures import ERROR_FLOOR_N, Row
 from drake_haptics.evaluation.accuracy.pareto import (
-    ERROR_FLOOR_N,
     find_bend,
     find_front,
     find_front_points,
     find_knee_points,
-    get_native_us,
 )
 from drake_haptics.evaluation.accuracy.setting import Setting
 
@@ -122,7 +120,7 @@ def test_what_was_not_measured_is_not_on_the_front():
     row = make_row("a", "c", 1.0, 1.0, 1.0)
     assert find_front(make_study(missing, row)).rows == (row,)
     with pytest.raises(ValueError, match="b was not measured: not installed"):
-        get_native_us(missing)
+        _ = missing.native_us
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from drake_haptics.common.colors import FRONT
-from drake_haptics.evaluation.accuracy.pareto import ERROR_FLOOR_N
+from drake_haptics.evaluation.accuracy.figures import ERROR_FLOOR_N
 from drake_haptics.evaluation.accuracy.plot import draw_study
 from drake_haptics.evaluation.accuracy.report import group_rows
 from drake_haptics.evaluation.accuracy.setting import Setting

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -25,10 +25,7 @@ class PeerProblem:
     """A tool that moves as recorded among objects at rest, without effects.
 
     Attributes:
-        scene: Scene with the gains.
-        motion: Motion of the tool.
-        tool: Tool in convex pieces.
-        objects: Objects in convex pieces.
+        tool: Tool in convex pieces, as the objects.
         part: Calls to this package's core for the same problem, with the force law.
         f_W: (n, 3) force of the reference, N, for fitting gains that the scene lacks.
     """
@@ -65,12 +62,8 @@ class PeerAnswers:
     remark: str = ""
 
 
-class Answer(Protocol):
-    """A method that calculates contact wrenches."""
-
-    def __call__(self, problem: PeerProblem) -> PeerAnswers:
-        """Answers the whole motion; raises an error if the library cannot."""
-        ...
+# A method that answers the whole motion; raises an error if the library cannot.
+Answer = Callable[[PeerProblem], PeerAnswers]
 
 
 def make_peer_problem(

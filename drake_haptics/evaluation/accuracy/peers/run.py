@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import copy
 import importlib
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.progress import Progress, ignore_progress
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, PeerRow
 from drake_haptics.evaluation.accuracy.knobs import make_reference
 from drake_haptics.evaluation.accuracy.peers.problem import (
@@ -39,10 +39,8 @@ class PeerMethod:
     """One method of another library.
 
     Attributes:
-        library: Name of the library.
         package: Name of the package for pip.
-        module: Module of this folder that imports the library.
-        function: Function of the module, an `Answer`.
+        module: Module of this folder that has the `function`, an `Answer`.
         words: Description of the query, for the report.
         for_pieces: Whether it equals another method if the tool is one piece.
     """
@@ -91,7 +89,7 @@ def run_peers(
     motion: RecordedMotion,
     truth: Truth,
     *,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = ignore_progress,
 ) -> tuple[PeerRow, ...]:
     """Compares other libraries' contact wrenches with the truth.
 
@@ -104,15 +102,14 @@ def run_peers(
     Returns:
         A row for each of `METHODS`, with the reason if a library is absent or fails.
     """
-    report = progress or (lambda what, share: None)
     if scene.effects != Effects():
-        report("finding the truth without effects", 0.0)
+        progress("finding the truth without effects", 0.0)
         scene = _leave_out_effects(scene)
         truth = find_truth(make_reference(scene).apply(scene), motion)
     problem = make_peer_problem(build_without_scene_warnings(scene), motion, truth)
     rows = []
     for done, method in enumerate(METHODS):
-        report(f"{method.library}: {method.words}", done / len(METHODS))
+        progress(f"{method.library}: {method.words}", done / len(METHODS))
         rows.append(run_peer(method, problem, truth))
     return tuple(rows)
 
@@ -138,7 +135,6 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
 
 
 def _leave_out_effects(scene: Scene) -> Scene:
-    """Returns a copy of a scene without effects, also in its materials."""
     bare = copy.deepcopy(scene)
     bare.effects = Effects()
     for item in bare.environment:
@@ -159,13 +155,12 @@ def add_peers(
     study: AccuracyStudy,
     scene: Scene,
     *,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = ignore_progress,
 ) -> AccuracyStudy:
     """Returns a study with a row for each method of another library.
 
     Raises:
         RunError: The scene diverges.
-        KeyboardInterrupt: Ctrl-C is pressed.
     """
     motion = record_motion(scene, study.ticks / scene.device.rate_hz)
     truth = find_truth(study.reference.apply(scene), motion)

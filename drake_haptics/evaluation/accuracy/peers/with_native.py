@@ -29,8 +29,8 @@ from drake_haptics.evaluation.measuring.native_build import (
     open_mjcf,
 )
 from drake_haptics.evaluation.measuring.pieces import (
-    listed,
     mesh_assets,
+    mesh_bodies,
     mesh_geoms,
 )
 from drake_haptics.evaluation.measuring.timing import clock_interval, typical
@@ -94,21 +94,15 @@ def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
 def _make_mjcf(problem: PeerProblem) -> str:
     """Returns a model with a body for each object, and a free last one for the tool."""
     parts = {f"object{i}": part for i, part in enumerate(problem.objects)}
-    assets = [mesh_assets(name, part) for name, part in parts.items()]
-    objects = [
-        f'<body pos="{listed(X_WO[4:])}" quat="{listed(X_WO[:4])}">'
-        + mesh_geoms(name, part, 'contype="1" conaffinity="0"')
-        + "</body>"
-        for (name, part), X_WO in zip(parts.items(), problem.part.X_WO, strict=True)
-    ]
+    assets = [mesh_assets(*each) for each in {"tool": problem.tool, **parts}.items()]
     reach = f'contype="0" conaffinity="1" margin="{problem.tolerance_m!r}"'
     return f"""
 <mujoco>
   <option><flag multiccd="disable"/></option>
   <size memory="64M"/>
-  <asset>{mesh_assets("tool", problem.tool)} {" ".join(assets)}</asset>
+  <asset>{" ".join(assets)}</asset>
   <worldbody>
-    {" ".join(objects)}
+    {mesh_bodies(parts, problem.part.X_WO, "")}
     <body>
       <freejoint/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>

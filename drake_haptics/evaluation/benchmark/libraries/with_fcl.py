@@ -11,6 +11,7 @@ from drake_haptics._core import ConvexPolytope
 from drake_haptics.evaluation.benchmark.pair_library import (
     PairAnswers,
     PairLibrary,
+    ask_each,
     normals_between,
 )
 from drake_haptics.evaluation.benchmark.pairs import PairShape
@@ -36,18 +37,15 @@ class FclQuery:
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
         """See `PairQuery.run`."""
-        distance, p_WCa, p_WCb, seconds = [], [], [], []
-        for X in X_WA:
-            self._A.setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
-            result = fcl.DistanceResult()
-            d, time_s = self._timer.call((self._A, self._B, self._request, result))
-            distance.append(d)
-            p_WCa.append(result.nearest_points[0])
-            p_WCb.append(result.nearest_points[1])
-            seconds.append(time_s)
-        found = np.array(distance)
-        normals = normals_between(np.array(p_WCa), np.array(p_WCb), found)
-        return PairAnswers(found, normals, np.array(seconds))
+        return ask_each(X_WA, self._ask)
+
+    def _ask(self, X_WA: np.ndarray) -> tuple[float, np.ndarray, float]:
+        self._A.setTransform(fcl.Transform(X_WA[:3, :3], X_WA[:3, 3]))
+        result = fcl.DistanceResult()
+        arguments = (self._A, self._B, self._request, result)
+        distance, time_s = self._timer.call(arguments)
+        p_WCa, p_WCb = map(np.asarray, result.nearest_points)
+        return distance, normals_between(p_WCa, p_WCb, distance), time_s
 
 
 def _convex(vertices: np.ndarray) -> fcl.Convex:

@@ -24,12 +24,9 @@ from drake_haptics.scene.schema import Scene
 
 @dataclass(frozen=True, eq=False)
 class LoopProblem:
-    """The problem for all loops.
+    """The problem for all loops: a scene without effects, and the motion of its handle.
 
-    Attributes:
-        scene: Scene with the gains and the objects' poses; without effects.
-        motion: Motion of the handle, tick by tick; that of the tool is not used.
-        objects: Objects at rest.
+    The motion of the tool is not used; the objects are at rest.
     """
 
     name: str

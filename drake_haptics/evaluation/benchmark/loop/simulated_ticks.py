@@ -31,14 +31,14 @@ def time_ticks(
 ) -> np.ndarray:
     """Returns the time (ticks,) of each tick, s.
 
+    Neither waiting nor `between` is part of a tick.
+
     Args:
         simulator: Simulator at time 0, not initialized.
         ticks: Number of ticks.
         period_s: Period of the ticks, s.
-        paced: Whether each tick waits for the clock, as for a device; otherwise ticks
-            follow at once.
-        between: Function that is called after each tick with the number of the next
-            one. Neither its time nor that of waiting is part of a tick.
+        paced: Whether each tick waits for the clock, as for a device.
+        between: Called after each tick with the number of the next one.
     """
     begins: list[float] = []
     ends: list[float] = []
@@ -66,7 +66,6 @@ class SimulatedLoop(ABC):
     """A loop in Drake's Simulator."""
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Stores the problem of the loop."""
         self._problem = problem
         self._paced = paced
 
@@ -87,11 +86,8 @@ def observe_ticks(
 ) -> LoopCourse:
     """Returns the course of a loop in a run that is not timed.
 
-    Args:
-        problem: Problem of the loop.
-        simulator: Simulator at the beginning of the motion.
-        pose: Port whose value begins with the tool's [qw qx qy qz x y z], m.
-        contacts: Port of the `ContactSet` of each tick.
+    The simulator is at the beginning of the motion. The pose begins with the tool's [qw
+    qx qy qz x y z], m; the contacts are a `ContactSet`.
     """
     root = simulator.get_context()
     pose_context = pose.get_system().GetMyContextFromRoot(root)

@@ -48,7 +48,6 @@ class StockLoop:
     """
 
     def __init__(self, problem: LoopProblem, solver: str, *, paced: bool = False):
-        """Builds the diagram."""
         self._problem = problem
         self._paced = paced
         builder = DiagramBuilder()

@@ -38,7 +38,6 @@ class ThisLoop(SimulatedLoop):
     """
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Builds the loop; see `SimulatedLoop`."""
         super().__init__(problem, paced=paced)
         self._haptic = build_without_scene_warnings(problem.scene, self._make_device())
 
@@ -170,7 +169,6 @@ def make_recorded_device(problem: LoopProblem) -> HapticDevice:
 
 
 def _make_recording(problem: LoopProblem) -> Diagram:
-    """Returns a backend of a device whose handle moves as recorded."""
     motion = problem.motion
     rows = np.hstack([motion.X_WH, motion.V_WH])
     begin_s = motion.times_s - _EARLY * motion.period_s

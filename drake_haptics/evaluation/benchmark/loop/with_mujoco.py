@@ -25,6 +25,7 @@ from drake_haptics.evaluation.measuring.native_build import (
 from drake_haptics.evaluation.measuring.pieces import (
     listed,
     mesh_assets,
+    mesh_bodies,
     mesh_geoms,
 )
 from drake_haptics.evaluation.measuring.timing import clock_interval
@@ -81,18 +82,10 @@ def make_mjcf(problem: LoopProblem) -> str:
     torquescale = 2.0 * np.sqrt(coupling.rotational_stiffness_Nm_per_rad * softness)
     weld = _solref(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m, mass_kg)
     touch = _solref(contact.stiffness_N_per_m, contact.damping_Ns_per_m, mass_kg)
-    names = [f"object{i}" for i in range(len(problem.objects))]
+    parts = {f"object{i}": part for i, part in enumerate(problem.objects)}
     surface = f'condim="1" solref="{touch}" solimp="{_SOLIMP}"'
-    objects = "\n".join(
-        f'<body pos="{listed(X[4:])}" quat="{listed(X[:4])}">'
-        + mesh_geoms(name, part, f'contype="1" conaffinity="0" {surface}')
-        + "</body>"
-        for name, part, X in zip(
-            names, problem.objects, map(pose_to_vector, problem.X_WO), strict=True
-        )
-    )
-    assets = [mesh_assets("tool", problem.tool)]
-    assets += [mesh_assets(n, p) for n, p in zip(names, problem.objects, strict=True)]
+    objects = mesh_bodies(parts, map(pose_to_vector, problem.X_WO), surface)
+    assets = [mesh_assets(*each) for each in {"tool": problem.tool, **parts}.items()]
     return f"""
 <mujoco>
   <option timestep="{problem.motion.period_s}" integrator="implicitfast"

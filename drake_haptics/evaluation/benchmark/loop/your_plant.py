@@ -37,7 +37,6 @@ class PlantLoop(SimulatedLoop):
     """
 
     def __init__(self, problem: LoopProblem, *, paced: bool = False):
-        """Builds the diagram; see `SimulatedLoop`."""
         super().__init__(problem, paced=paced)
         builder = DiagramBuilder()
         with quiet_streams(2):
@@ -100,7 +99,6 @@ def _add_objects(plant: MultibodyPlant, problem: LoopProblem) -> None:
 def _add_shape(
     plant: MultibodyPlant, body: RigidBody, decomposition: Decomposition
 ) -> None:
-    """Gives a body the mesh of a decomposition."""
     plant.RegisterCollisionGeometry(
         body,
         RigidTransform(),
