@@ -257,8 +257,6 @@ class CouplingAdvice:
         Raises:
             SceneError: There is no such preset, or its model is not an arm.
         """
-        self._period_s = 1.0 / scene.device.rate_hz
-        self._delay_s = calc_force_delay(scene)
         self._preset = load_device_preset(scene.device.preset)
         self._loosely_held = calc_loosely_held(scene, self._preset)
         self._held = None
@@ -292,5 +290,8 @@ class CouplingAdvice:
         if self._held is None:
             return find_exceeded_ratings(scene.coupling, self._preset)
         return find_broken_bounds(
-            scene.coupling, self._held, self._period_s, self._delay_s
+            scene.coupling,
+            self._held,
+            scene.device.wrench_period_s,
+            calc_force_delay(scene),
         )

@@ -7,10 +7,14 @@ from box_scenes import over_a_plate
 from fake_device import ScriptedDevice
 from other_arm import PRESET, write_preset
 
-from drake_haptics.bounds.held_handle import check_real_coupling
+from drake_haptics.bounds.held_handle import (
+    check_real_coupling,
+    check_scene_coupling,
+)
 from drake_haptics.cockpit.scene_changes import CouplingAdvice
 from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.device_preset import list_device_presets, load_device_preset
 from drake_haptics.scene.schema import ForceDelayParameters
 from drake_haptics.scene.validation import SceneWarning
@@ -143,6 +147,21 @@ def test_the_page_warns_of_a_real_device_as_a_run_does(tmp_path):
     simulated = advice.check(scene, is_real=False)
     assert not any("light" in bound.sentence for bound in simulated)
     assert len(simulated) < len(said)
+
+
+def test_the_page_warns_of_a_simulated_device_as_a_run_does(tmp_path):
+    """Also where a servo computes the wrench more often than the loop ticks."""
+    scene = over_a_plate(tmp_path, [START])
+    scene.coupling.stiffness_N_per_m, scene.coupling.damping_Ns_per_m = 15_000.0, 0.0
+    device = make_simulated_device(scene, make_hand_path(scene.hand.path))
+    broken = {}
+    for servo_rate_hz in (None, 4000.0):
+        scene.device.servo_rate_hz = servo_rate_hz
+        bounds = CouplingAdvice(scene).check(scene, is_real=False)
+        said = [bound.sentence for bound in bounds]
+        assert said == check_scene_coupling(scene, device)
+        broken[servo_rate_hz] = [words for words in said if "Colgate" in words]
+    assert broken[None] and not broken[4000.0]
 
 
 def test_why_the_simulated_hand_cannot_hold_the_handle_is_said(tmp_path):
