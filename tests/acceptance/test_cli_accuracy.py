@@ -235,7 +235,7 @@ def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, code, wor
     assert line.startswith(words)
 
 
-def test_one_setting_that_cannot_be_had_is_an_error(invoke):
+def test_one_setting_that_is_not_available_is_an_error(invoke):
     result = invoke("sphere_pen", "--quick", "--only", "tool.mesh=nope.obj")
     assert result.exit_code == 1 and result.stdout == ""
     assert "Error: --only: tool.mesh nope.obj: " in result.stderr

@@ -218,7 +218,7 @@ def test_a_device_file_is_written_and_not_replaced():
     assert not os.path.isfile("/dev/full")
 
 
-def test_an_interrupted_decomposition_leaves_nothing_and_begins_anew(
+def test_an_interrupted_decomposition_leaves_nothing_and_begins_again(
     folder, monkeypatch
 ):
     real = decomposition._core.decompose_surface
@@ -256,7 +256,7 @@ def test_a_decomposition_killed_as_it_is_kept_leaves_no_half_entry(folder):
     ]
 
 
-def test_a_cache_that_cannot_be_had_costs_only_time(folder, monkeypatch):
+def test_a_cache_that_is_not_available_costs_only_time(folder, monkeypatch):
     (folder / "cache").touch()
     result = run_scene()
     assert result.exit_code == 0

@@ -111,7 +111,7 @@ def test_a_paused_host_needs_enter_before_anything_is_felt_again(link, host_file
     assert figures["device"]["recoveries"] >= 1
 
 
-def test_a_driver_that_is_started_anew_needs_enter_too(tmp_path, host_file):
+def test_a_driver_that_is_started_again_needs_enter_too(tmp_path, host_file):
     file = tmp_path / "figures.json"
     with running(device_command(file, "--ttl-ms", 500), file) as driver:
         with WatchedLink(driver.port) as link:

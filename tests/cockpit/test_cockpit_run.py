@@ -77,7 +77,7 @@ def test_it_is_seen_until_its_end_which_is_told(scene, meshcat, fails):
     assert ("the tool is lost" in over["why"]) == fails
 
 
-def test_a_device_that_cannot_be_had_leaves_nothing_open(scene, meshcat):
+def test_a_device_that_is_not_available_leaves_nothing_open(scene, meshcat):
     listener = open_page_port()
     port = listener.getsockname()[1]
     with pytest.raises(HapticsError, match="give udp"):

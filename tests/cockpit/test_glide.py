@@ -140,7 +140,7 @@ def test_back_to_the_file_glides_too(scene, meshcat, monkeypatch):
     np.testing.assert_allclose(rig.seen[-1], [0, 0, calc_force()], atol=0.02)
 
 
-def test_a_scene_begun_anew_in_the_simulated_hand_is_the_same_again(
+def test_a_scene_begun_again_in_the_simulated_hand_is_the_same(
     scene, meshcat, monkeypatch
 ):
     """With a value that was on its way when it began."""

@@ -86,7 +86,7 @@ def test_the_mouse_takes_the_handle_where_it_is(make):
     assert rig.holder.pointer.get_link_status().received == 1
 
 
-def test_the_simulated_hand_begins_the_scene_anew(make):
+def test_the_simulated_hand_begins_the_scene_again(make):
     rig = make({200: [MOUSE], 300: [{"do": "handle", "to": "hand"}]})
     figures = rig.run(0.5)
     assert figures["ticks"] == 500
@@ -95,7 +95,7 @@ def test_the_simulated_hand_begins_the_scene_anew(make):
 
 
 @pytest.mark.parametrize("handle", ["hand", "mouse", "sliders"])
-def test_a_scene_can_begin_anew_in_any_hand(make, handle):
+def test_a_scene_can_begin_again_in_any_hand(make, handle):
     rig = make(
         {100: [{"do": "handle", "to": handle}], 200: [{"do": "restart"}]},
         watch=lambda haptic, root: find_handle(haptic, root).translation(),
@@ -170,7 +170,7 @@ def fail_once(at_tick):
     return watch
 
 
-def test_a_run_that_fails_of_changes_begins_anew_without_them(make):
+def test_a_run_that_fails_of_changes_begins_again_without_them(make):
     rig = make({100: [STIFFER, FRICTION]}, watch=fail_once(600))
     assert rig.run(0.8)["ticks"] == 800
     np.testing.assert_allclose(rig.page.times[-200:], 1e-3 * np.arange(1, 201))

@@ -131,7 +131,7 @@ def test_what_waits_is_not_shown_for_becoming_another():
     assert taken.waits and not any(each.F_Ho_B.any() for each in device.commands)
 
 
-def test_after_a_fault_it_is_taken_anew():
+def test_after_a_fault_it_is_taken_again():
     fault = []
 
     def read(k):

@@ -59,7 +59,7 @@ def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, conta
 
 
 @pytest.mark.parametrize("query_rate_hz", [None, 250.0])
-def test_a_query_of_several_ticks_is_not_asked_anew_by_relief(core, query_rate_hz):
+def test_a_query_of_several_ticks_is_not_asked_again_by_relief(core, query_rate_hz):
     found = add_contact_systems(
         DiagramBuilder(),
         core,

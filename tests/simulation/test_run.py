@@ -40,7 +40,7 @@ def test_a_run_measures_every_tick(haptic):
     assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
 
 
-def test_a_run_starts_anew_each_time(haptic):
+def test_a_run_starts_again_each_time(haptic):
     first, second = (run(haptic, 0.3, energy=True).to_dict() for _ in range(2))
     for key in (
         "max_force_N",

@@ -171,10 +171,10 @@ def test_a_query_looks_as_far_as_its_context_says_and_relief_leaves(query):
     assert len(query_at(query, context, 0.023)) == 0
     assert query_at(query, context, 0.0219).least_distance == pytest.approx(1.9e-3)
     # Others look as far as they did.
-    anew = query.CreateDefaultContext()
-    load_shedding.FixValue(anew, [0.0, 1.0, 0.0])
-    assert len(query_at(query, anew, 0.0219)) > 0
-    assert len(query_at(query, anew, 0.0221)) == 0
+    fresh = query.CreateDefaultContext()
+    load_shedding.FixValue(fresh, [0.0, 1.0, 0.0])
+    assert len(query_at(query, fresh, 0.0219)) > 0
+    assert len(query_at(query, fresh, 0.0221)) == 0
 
 
 def test_relief_leaves_a_share_of_the_tolerance_that_the_context_says(query):

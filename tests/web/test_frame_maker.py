@@ -83,7 +83,7 @@ def test_the_trace_has_the_largest_of_every_4_ms():
     assert len(frames[0]["trace"]["torque_Nm"]) == len(frames[0]["trace"]["force_N"])
 
 
-def test_a_scene_that_begins_anew_has_a_trace_and_rates_again():
+def test_a_scene_that_begins_again_has_a_trace_and_rates_again():
     maker = FrameMaker()
     maker.make(packet([tick(9.0 + 1e-3 * i) for i in range(100)], clock_s=1.0))
     frame = maker.make(packet([tick(1e-3 * i) for i in range(100)], clock_s=1.1))

@@ -24,7 +24,7 @@ def test_it_tells_of_the_scene_and_of_the_loop(page):
     assert page.evaluate("document.getElementById('tick-bar').style.width != '0%'")
 
 
-def test_the_trace_is_drawn_anew_while_the_run_goes_on(page):
+def test_the_trace_is_drawn_again_while_the_run_goes_on(page):
     # It begins when the page is there, which may be late in the run.
     page.wait_for(f"{TRACE} > 15")
     before = page.trace()

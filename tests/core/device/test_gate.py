@@ -320,7 +320,7 @@ def test_a_late_disable_does_not_leave_a_fault(active: GateRig) -> None:
     assert_latched(active, Fault.DEVICE)
 
 
-def test_a_restarted_driver_waits_for_the_host_to_begin_anew(rig: GateRig) -> None:
+def test_a_restarted_driver_waits_for_the_host_to_begin_again(rig: GateRig) -> None:
     for _ in range(100):
         assert rig.send() == "not_disabled_first"
         assert not rig.step().any()
@@ -353,7 +353,7 @@ def test_a_fault_takes_back_what_an_earlier_disable_allowed(rig: GateRig) -> Non
     assert rig.send(session=1) == "not_disabled_first"
 
 
-def test_of_two_hosts_the_second_waits_and_begins_anew(rig: GateRig) -> None:
+def test_of_two_hosts_the_second_waits_and_begins_again(rig: GateRig) -> None:
     rig.send(session=2, enable=False)
     rig.activate()
     assert rig.send(session=2) == "foreign_session"

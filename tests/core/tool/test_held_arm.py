@@ -116,7 +116,7 @@ def test_a_path_turns_about_the_direction_of_its_quaternion(path):
         np.testing.assert_allclose(V, [0, 0, np.pi / (1 + s * s), 0, 0, 0.1])
 
 
-def test_segments_follow_each_other_and_begin_anew():
+def test_segments_follow_each_other_and_begin_again():
     cubics = np.zeros((2, 4, 7))
     cubics[:, 0, 0] = 1.0
     cubics[0, :, 4] = [0, 0, 0, 1.0]

@@ -280,8 +280,8 @@ def test_a_tolerance_that_changes_keeps_the_way_out() -> None:
         assert contacts.distance.min() == pytest.approx(-0.0145)
         np.testing.assert_allclose(contacts.nhat_BA_W, [[0, 0, 1]], atol=1e-9)
     tracker.reset()
-    anew = tracker.query(pose([0, 0, -0.004]))
-    np.testing.assert_allclose(anew.nhat_BA_W, [[0, 0, -1]], atol=1e-9)
+    fresh = tracker.query(pose([0, 0, -0.004]))
+    np.testing.assert_allclose(fresh.nhat_BA_W, [[0, 0, -1]], atol=1e-9)
 
 
 @pytest.mark.parametrize("bad", [-1e-9, np.nan, np.inf, None, "1 mm"])

@@ -127,7 +127,7 @@ def test_others_are_pressed_with_a_like_force_at_a_like_place(
     assert mean_N == pytest.approx(ours.force_N[pressed].mean(), rel=0.4)
 
 
-def test_every_loop_starts_anew_each_time(
+def test_every_loop_starts_again_each_time(
     loops: dict[str, Loop], courses: dict[str, LoopCourse]
 ) -> None:
     for name, first in courses.items():

@@ -167,8 +167,8 @@ def test_its_twin_knows_what_the_query_learnt(tool):
         twin_at(twin, of_twin, q_WT).value.distance, expected.distance, atol=1e-12
     )
     # Without the hint it starts from nothing, and leaves by the nearer side.
-    anew = twin_at(twin, twin.CreateDefaultContext(), q_WT).value
-    assert anew.nhat_BA_W[0, 2] == pytest.approx(-1.0)
+    fresh = twin_at(twin, twin.CreateDefaultContext(), q_WT).value
+    assert fresh.nhat_BA_W[0, 2] == pytest.approx(-1.0)
 
 
 def test_its_twin_is_a_function_of_its_context(tool):
@@ -207,11 +207,11 @@ def test_a_new_context_starts_from_the_hint(tool):
     """As where a scene is rebuilt with other gains, its tool pressed as before."""
     query, context, expected = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
     query.prepare_conversion(context)
-    hinted, anew = query.CreateDefaultContext(), query.CreateDefaultContext()
+    hinted, fresh = query.CreateDefaultContext(), query.CreateDefaultContext()
     hinted.SetTimeStateAndParametersFrom(context)
     found = query_at(query, hinted, -0.004)
     np.testing.assert_allclose(found.distance, expected.distance, atol=1e-12)
-    assert query_at(query, anew, -0.004).nhat_BA_W[0, 2] == pytest.approx(-1.0)
+    assert query_at(query, fresh, -0.004).nhat_BA_W[0, 2] == pytest.approx(-1.0)
     # Two contexts of one hint know each for itself.
     other = query.CreateDefaultContext()
     other.SetTimeStateAndParametersFrom(context)
