@@ -293,6 +293,7 @@ class HaplyExchange:
         reading = self.reading
         if reading is None:
             return ASK_FOR_DEVICES
+        shows_force = not self.is_released
         is_silent = self._fail_after_silence(now_ns)
         if is_silent:
             self.fall_silent()
@@ -300,7 +301,9 @@ class HaplyExchange:
         # A single lost message must not be felt, so the handle is assumed not to have
         # moved.
         F_Ho_B = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
-        return ASK_FOR_DEVICES if is_silent else self._format(F_Ho_B)
+        # The last force that the service receives must be zero.
+        asks = is_silent and not shows_force
+        return ASK_FOR_DEVICES if asks else self._format(F_Ho_B)
 
     def _fail_after_silence(self, now_ns: int) -> bool:
         """Returns whether the service was silent, which ends force as a fault."""

@@ -158,6 +158,19 @@ def test_when_nothing_usable_comes_the_device_is_at_fault(talk, text):
     check_comes_back_when_wanted(talk)
 
 
+@pytest.mark.parametrize("text", ["{", "{}"])
+@pytest.mark.parametrize("after_ns", [1_000_000, 101_000_000])
+def test_a_service_is_asked_for_devices_only_after_it_was_sent_zero(
+    talk, text, after_ns
+):
+    shown = [np.array([1.0, 0.0, 0.0])]
+    while shown[-1] is not None:
+        talk.written = command((1.0, 0.0, 0.0))
+        shown.append(talk.tick(text, after_ns))
+    assert shown[-2].tolist() == [0.0, 0.0, 0.0]
+    assert talk.state == (GateState.FAULT, Fault.DEVICE)
+
+
 def test_a_command_that_fell_into_a_silence_is_not_shown_after_it(talk):
     for _ in range(150):
         talk.written = command((1.0, 0.0, 0.0))
