@@ -48,6 +48,8 @@ class PageProcess:
         self._link = link
         self._server = PageServer(listener, origin, self._forward)
         self._frames = FrameMaker()
+        # asyncio forgets a sender that waits for a socket when another begins to.
+        self._turn = asyncio.Lock()
         self._why = ""
         # Time of the loop's last packet; None before the first one.
         self._heard_s: float | None = None
@@ -114,8 +116,9 @@ class PageProcess:
     async def _forward(self, asked: dict[str, Any]) -> None:
         """Forwards a page's request; waits while the loop does not listen."""
         loop = asyncio.get_running_loop()
-        with suppress(OSError):
-            await loop.sock_sendall(self._link, json.dumps(asked).encode())
+        async with self._turn:
+            with suppress(OSError):
+                await loop.sock_sendall(self._link, json.dumps(asked).encode())
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
