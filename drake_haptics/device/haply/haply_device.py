@@ -157,14 +157,17 @@ class HaplyDevice(DeviceBackend):
         return self._exchange.reading
 
     def write(self, command: DeviceCommand) -> None:
-        """Commands a wrench; the torque and the slopes are not used.
+        """Commands a wrench, which is copied; torque and slopes are not used.
 
         Raises:
+            TypeError: A part of the wrench is not a real number.
             ValueError: The wrench does not have six numbers.
         """
-        if np.shape(command.F_Ho_B) != (6,):
-            raise ValueError(f"F_Ho_B must be (6,), is {np.shape(command.F_Ho_B)}")
-        self._command = command
+        # A copy, because the caller may change its array while the thread reads.
+        F_Ho_B = np.array(command.F_Ho_B, dtype=float)
+        if F_Ho_B.shape != (6,):
+            raise ValueError(f"F_Ho_B must be (6,), is {F_Ho_B.shape}")
+        self._command = DeviceCommand(F_Ho_B, command.X_BH, command.V_BH)
 
     def recover(self) -> None:
         """Ends a fault of the gate, so that the next `write` ramps the force up."""

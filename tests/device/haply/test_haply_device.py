@@ -286,3 +286,23 @@ def test_what_is_not_a_wrench_is_refused():
     with make_service() as service, open_device(service) as device:
         with pytest.raises(ValueError, match=r"F_Ho_B must be \(6,\), is \(3,\)"):
             device.write(DeviceCommand(np.zeros(3), np.zeros(7), np.zeros(6)))
+
+
+@pytest.mark.parametrize("part", ["1 N", object()])
+def test_a_wrench_that_is_not_of_numbers_is_refused_and_the_device_goes_on(part):
+    with make_service() as service, open_device(service) as device:
+        with pytest.raises((TypeError, ValueError), match="float"):
+            device.write(DeviceCommand([part] * 6, np.zeros(7), np.zeros(6)))
+        wait_until(lambda: is_in(device, GateState.ACTIVE), lambda: press(device))
+
+
+def test_a_command_that_is_changed_and_written_again_is_shown():
+    with make_service() as service, open_device(service) as device:
+        mass = service.devices["049D"]
+        command = DeviceCommand(np.zeros(6), np.zeros(7), np.zeros(6))
+        for sign in (1.0, -1.0):
+            command.F_Ho_B[5] = sign
+            wait_until(
+                lambda sign=sign: mass.forces and sign * mass.forces[-1][1][2] > 0.5,
+                lambda: device.write(command),
+            )
