@@ -135,6 +135,18 @@ def make_simulated_driver(
     )
 
 
+class _ReceivedCommand(lcmt_haptic_command):
+    """A command for a subscriber that must not raise, because the device would stop."""
+
+    @classmethod
+    def decode(cls, data: bytes) -> lcmt_haptic_command:  # type: ignore[override]
+        """Returns the command; an empty one, which the gate ignores, if damaged."""
+        try:
+            return lcmt_haptic_command.decode(data)
+        except ValueError:
+            return lcmt_haptic_command()
+
+
 def AddLcmDriver(
     builder: DiagramBuilder,
     arm: System,
@@ -147,6 +159,7 @@ def AddLcmDriver(
     """Adds the systems that make an arm a device on LCM, behind the gate.
 
     Run the diagram in real time, because the time of its context is the gate's clock.
+    Bytes that are not a command are ignored.
 
     Args:
         builder: Builder with the arm and Drake's `LcmInterfaceSystem` of the same
@@ -175,7 +188,7 @@ def AddLcmDriver(
     )
     commands = builder.AddNamedSystem(
         "haptic_command_subscriber",
-        LcmSubscriberSystem.Make(COMMAND_CHANNEL, lcmt_haptic_command, lcm),
+        LcmSubscriberSystem.Make(COMMAND_CHANNEL, _ReceivedCommand, lcm),
     )
     statuses = builder.AddNamedSystem(
         "haptic_status_publisher",
