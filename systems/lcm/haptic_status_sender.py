@@ -12,7 +12,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.gate import GateStatus
-from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
+from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status, to_int32
 
 
 class HapticStatusSender(LeafSystem):
@@ -82,8 +82,8 @@ class HapticStatusSender(LeafSystem):
                 wrench=tuple(gate.F_Ho_B.tolist()),
                 max_force=gate.max_force_N,
                 max_torque=gate.max_torque_Nm,
-                buttons=int(buttons),
-                rejected=gate.rejected,
+                buttons=to_int32(int(buttons)),
+                rejected=to_int32(gate.rejected),
                 gate=int(gate.state),
                 fault=int(gate.fault),
             )

@@ -26,6 +26,7 @@ _ZEROS = {"double": 0.0, "boolean": False}
 _FINGERPRINT_SEED = 0x12345678
 _CONSTANT_LENGTH = 0
 _UINT64 = (1 << 64) - 1
+_INT32_RANGE = 1 << 32
 
 _Message = TypeVar("_Message", bound="FixedMessage")
 # Error of a quaternion's length, from the few digits that a driver may send.
@@ -200,6 +201,16 @@ class lcmt_haptic_command(FixedMessage):
     time_to_live: int = member("int32_t")
     enable: bool = member("boolean")
     wrench: tuple[float, ...] = member("double", 6)
+
+
+def to_int32(bits: int) -> int:
+    """Returns the number that an `int32_t` with these 32 bits is; others are lost."""
+    return (bits + _INT32_RANGE // 2) % _INT32_RANGE - _INT32_RANGE // 2
+
+
+def to_uint32(number: int) -> int:
+    """Returns the 32 bits of an `int32_t` as a number that is not negative."""
+    return number % _INT32_RANGE
 
 
 def find_flaw(status: lcmt_haptic_status) -> str | None:

@@ -27,6 +27,7 @@ from drake_haptics.device.lcm.haptic_messages import (
     find_flaw,
     lcmt_haptic_command,
     lcmt_haptic_status,
+    to_uint32,
 )
 
 # A device that stays idle for this long after it was enabled has missed a release.
@@ -256,7 +257,7 @@ class LcmDevice(DeviceBackend):
 
     def get_link_status(self) -> LinkStatus:
         """Returns the counts of messages, and of commands that the device refused."""
-        refused = 0 if self._status is None else self._status.rejected
+        refused = 0 if self._status is None else to_uint32(self._status.rejected)
         return LinkStatus(
             received=self._received,
             lost=self._lost,
@@ -302,7 +303,7 @@ class LcmDevice(DeviceBackend):
             X_BH=_normalize(status.pose),
             V_BH=np.array(status.velocity),
             F_Ho_B=np.array(status.wrench),
-            buttons=status.buttons,
+            buttons=to_uint32(status.buttons),
             gate=gate,
             fault=fault,
         )

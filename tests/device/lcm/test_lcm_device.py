@@ -265,6 +265,12 @@ def test_what_a_status_says_is_what_is_read():
     assert (reading.buttons, reading.gate, reading.fault) == (5, 2, 3)
 
 
+def test_all_32_buttons_and_as_many_refusals_are_read():
+    wire = Wire()
+    assert wire.send(buttons=-(2**31), rejected=-1).buttons == 2**31
+    assert wire.device.get_link_status().rejected == 2**32 - 1
+
+
 def test_losses_are_told_by_the_gaps():
     wire = Wire()
     for sequence in (1, 2, 5, 6):
