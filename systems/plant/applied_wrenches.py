@@ -31,11 +31,12 @@ def AppliedWrenches_(T: type) -> type:
     # The default is NaN for AutoDiffXd.
     p_BoBo_B = np.array([T(0.0)] * 3)
 
-    def make_force(body: BodyIndex) -> Any:
-        """Returns a force on a body at its origin, whose wrench is not yet set."""
+    def make_force(body: BodyIndex, F_Bo_W: Any) -> Any:
+        """Returns a force on a body whose wrench (6,) is at its origin."""
         force = AppliedForce()
         force.body_index = body
         force.p_BoBq_B = p_BoBo_B
+        force.F_Bq_W = SpatialForce(F_Bo_W)
         return force
 
     def add_up(evals: Sequence[Any], context: Any, first: Sequence[Any] = ()) -> Any:
@@ -97,7 +98,6 @@ def AppliedWrenches_(T: type) -> type:
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self._bodies = [tool, *objects]
-            self._forces = [make_force(body) for body in self._bodies]
             self._names = (tuple(tool_wrenches), tuple(object_wrenches))
             self._eval_on_tool = [
                 self.DeclareVectorInputPort(f"F_To_W_{name}", 6).Eval
@@ -156,10 +156,8 @@ def AppliedWrenches_(T: type) -> type:
                 wrenches += [
                     on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
                 ]
-            for force, F_Bo_W in zip(self._forces, wrenches, strict=True):
-                force.F_Bq_W = SpatialForce(F_Bo_W)
-            # Drake copies them.
-            forces.set_value(self._forces)
+            # New objects each time, because threads may share the system.
+            forces.set_value(list(map(make_force, self._bodies, wrenches)))
 
     return Impl
 

@@ -1,5 +1,8 @@
 """Wrenches reach the bodies that they are of, summed, with their derivatives."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from pydrake.autodiffutils import ExtractGradient, ExtractValue, InitializeAutoDiff
@@ -62,6 +65,32 @@ def test_another_context_leaves_the_forces_of_the_first_as_they_are():
     )
     np.testing.assert_array_equal(before, after)
     assert not np.isin(before, other).any()
+
+
+def count_foreign_forces(system, number):
+    """Returns how often a context has forces that are not of its own inputs."""
+    context = system.CreateDefaultContext()
+    foreign = 0
+    for k in range(1000):
+        F = np.full(6, 1000.0 * number + k)
+        for i in range(system.num_input_ports()):
+            size = system.get_input_port(i).size()
+            system.get_input_port(i).FixValue(context, np.resize(F, size))
+        forces = system.get_output_port().Eval(context)
+        foreign += any(np.any(force.F_Bq_W.get_coeffs() != 2.0 * F) for force in forces)
+    return foreign
+
+
+def test_threads_with_a_context_each_may_share_the_system():
+    system = make_system()
+    before_s = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(4) as threads:
+            counts = threads.map(count_foreign_forces, [system] * 4, range(4))
+            assert list(counts) == [0] * 4
+    finally:
+        sys.setswitchinterval(before_s)
 
 
 @pytest.mark.parametrize("again", [False, True])
