@@ -91,10 +91,10 @@ class ContactQuery(DifferentiableSystem):
     `set_tolerance`.
 
     The search starts from its last result in the same Context (paper, 5.2), and the
-    first time from the abstract parameter `hint` (index 0), the result of a query in
-    another Context. Without a hint it starts from scratch and may find another way out
-    of a deep penetration, so call `prepare_conversion` before the parameters are
-    copied. Objects with a fixed pose are placed once for each Context.
+    first time, and after parameters were copied or set to their defaults, from the
+    abstract parameter `hint` (index 0), the result of a query in another Context.
+    Without a hint it starts from scratch and may find another way out of a deep
+    penetration, so call `prepare_conversion` before the parameters are copied.
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
     features stay the same. There every search starts from the hint, and its result is a
@@ -161,14 +161,24 @@ class ContactQuery(DifferentiableSystem):
         )
         self._hint = self.DeclareAbstractParameter(Value[object](_NOTHING))
         self._tolerance = self.DeclareAbstractParameter(Value[object](tolerance_m))
-        from_tolerance = self.abstract_parameter_ticket(
-            AbstractParameterIndex(self._tolerance)
+        from_hint, from_tolerance = (
+            self.abstract_parameter_ticket(AbstractParameterIndex(parameter))
+            for parameter in (self._hint, self._tolerance)
         )
+        # A list of the hint, which is empty once a search has started from it.
+        self._eval_unread = self.DeclareCacheEntry(
+            description="unread hint",
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](_NOTHING), calc=self._list_hint
+            ),
+            prerequisites_of_calc={from_hint},
+        ).Eval
+        from_parameters = {from_hint, from_tolerance}
         self._contacts = self.DeclareAbstractOutputPort(
             "contacts",
             Value[object],
             self._calc_contacts,
-            {self.all_input_ports_ticket(), from_tolerance},
+            {self.all_input_ports_ticket(), *from_parameters},
         )
         self._law: list[InputPort] = []
         # A Context remembers its last search, which never changes a result by more than
@@ -180,7 +190,7 @@ class ContactQuery(DifferentiableSystem):
                 "contact_chain",
                 lambda: Value[object](_NOTHING),
                 self._prepare_tracker,
-                {from_tolerance, *(port.ticket() for port in self._law)},
+                {*from_parameters, *(port.ticket() for port in self._law)},
             ).Eval
         else:
             self._eval_tracker = self.DeclareCacheEntry(
@@ -189,7 +199,7 @@ class ContactQuery(DifferentiableSystem):
                     allocate=lambda: Value[object](_NOTHING),
                     calc=self._prepare_tracker,
                 ),
-                prerequisites_of_calc={from_tolerance},
+                prerequisites_of_calc=from_parameters,
             ).Eval
 
     def _declare_law(self, enable_shading: bool) -> list[InputPort]:
@@ -225,7 +235,10 @@ class ContactQuery(DifferentiableSystem):
         """
         self.ValidateContext(context)
         check_at_least(0, tolerance_m=tolerance_m)
+        # To Drake all abstract parameters change at once, but the hint stays as read.
+        unread = [*self._eval_unread(context)]
         context.get_mutable_abstract_parameter(self._tolerance).set_value(tolerance_m)
+        self._eval_unread(context)[:] = unread
 
     def prepare_conversion(self, context: Context) -> None:
         """Stores the last search in the parameter `hint`.
@@ -235,9 +248,8 @@ class ContactQuery(DifferentiableSystem):
                 necessary.
         """
         self._contacts.Eval(context)
-        context.get_mutable_abstract_parameter(self._hint).set_value(
-            copy.deepcopy(self._eval_tracker(context))
-        )
+        hint = copy.deepcopy(self._eval_tracker(context))
+        context.get_mutable_abstract_parameter(self._hint).set_value(hint)
 
     def take_hint(
         self, context: Context, other: ContactQuery, other_context: Context
@@ -245,7 +257,7 @@ class ContactQuery(DifferentiableSystem):
         """Takes over the last search of another query that has the same pieces.
 
         Args:
-            context: Context of this system, in which nothing has been evaluated yet.
+            context: Context of this system.
             other: Other query, which is evaluated if necessary.
             other_context: Context of the other query.
         """
@@ -304,16 +316,18 @@ class ContactQuery(DifferentiableSystem):
             tracker = ContactChain(tracker)
         return tracker
 
+    def _list_hint(self, context: Context, unread: AbstractValue) -> None:
+        unread.set_value([context.get_abstract_parameter(self._hint).get_value()])
+
     def _prepare_tracker(self, context: Context, value: AbstractValue) -> None:
-        """Makes the tracker of a Context, or sets its tolerance."""
+        """Makes a tracker from a hint that is new, or sets the tracker's tolerance."""
         tolerance_m = self.get_tolerance(context)
-        tracker = value.get_value()
-        if isinstance(tracker, SceneTracker):
-            tracker.tolerance = tolerance_m
-        else:
-            hint = context.get_abstract_parameter(self._hint).get_value()
-            tracker = self._make_tracker(hint, tolerance_m)
+        if unread := self._eval_unread(context):
+            tracker = self._make_tracker(unread.pop(), tolerance_m)
             value.set_value(tracker)
+        else:
+            tracker = value.get_value()
+            tracker.tolerance = tolerance_m
         if not self._law or not isinstance(tracker, ContactChain):
             return
         # A query that is used for its contacts alone needs no law.

@@ -212,8 +212,30 @@ def test_a_new_context_starts_from_the_hint(tool):
     found = query_at(query, hinted, -0.004)
     np.testing.assert_allclose(found.distance, expected.distance, atol=1e-12)
     assert query_at(query, fresh, -0.004).nhat_BA_W[0, 2] == pytest.approx(-1.0)
+    # So does one that has searched elsewhere before.
+    assert len(query_at(query, fresh, 1.0)) == 0
+    fresh.SetTimeStateAndParametersFrom(context)
+    found = query_at(query, fresh, -0.004)
+    np.testing.assert_allclose(found.distance, expected.distance, atol=1e-12)
     # Two contexts of one hint know each for itself.
     other = query.CreateDefaultContext()
     other.SetTimeStateAndParametersFrom(context)
     assert len(query_at(query, hinted, 1.0)) == 0
     assert query_at(query, other, -0.004).nhat_BA_W[0, 2] == pytest.approx(1.0)
+
+
+def test_a_context_at_its_defaults_answers_as_a_new_one(tool):
+    query, context, expected = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
+    assert expected.nhat_BA_W[0, 2] == pytest.approx(1.0)
+    query.SetDefaultContext(context)
+    found = query_at(query, context, -0.004)
+    new = query_at(query, query.CreateDefaultContext(), -0.004)
+    np.testing.assert_array_equal(found.nhat_BA_W, new.nhat_BA_W)
+    np.testing.assert_array_equal(found.distance, new.distance)
+
+
+def test_a_clone_keeps_its_way_out_when_its_tolerance_changes(tool):
+    query, context, _ = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
+    clone = context.Clone()
+    query.set_tolerance(clone, 2.0 * TOLERANCE)
+    assert query_at(query, clone, -0.004).nhat_BA_W[0, 2] == pytest.approx(1.0)
