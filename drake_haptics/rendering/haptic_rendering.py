@@ -121,12 +121,9 @@ class HapticRendering(Diagram):
         _check_effects(effects, coupling, device)
         self._tool = tool
         self._objects = tuple(objects)
-        self._skin_speed_m_per_s = calc_skin_speed(contact, period_s)
-        wiring = RenderingWiring(
-            tool,
-            objects,
-            None if tool.body.GetParentPlant().time_step() else period_s,
-        )
+        step_s = tool.body.GetParentPlant().time_step()
+        self._skin_speed_m_per_s = calc_skin_speed(contact, step_s or period_s)
+        wiring = RenderingWiring(tool, objects, None if step_s else period_s)
         wiring.add_contact(contact, effects, materials, period_s)
         self._proxy_gains = wiring.proxy_gains
         if coupling is not None:
@@ -171,8 +168,9 @@ class HapticRendering(Diagram):
     def skin_speed_m_per_s(self) -> float:
         """Speed at which one step of the plant crosses the contact tolerance, m/s.
 
-        With `contact.query_rate_hz` the step is that of the query. For a plant without
-        a time step it is `period_s`, the longest step of its integrator.
+        A query by `contact.query_rate_hz` that is slower than the step counts as the
+        step. For a plant without a time step the step is `period_s`, the longest of its
+        integrator.
         """
         return self._skin_speed_m_per_s
 

@@ -376,7 +376,7 @@ def _require_known(word: str, known: Collection[str], where: str) -> None:
     require(word in known, where, f"is '{word}'; {make_hint(word, known)}")
 
 
-def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
+def calc_skin_speed(contact: ContactParameters, step_s: float) -> float:
     """Returns the speed at which one step crosses the tolerance, m/s.
 
     The speed is infinite under the constraint law, whose step finds all that it can
@@ -384,11 +384,11 @@ def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
 
     Args:
         contact: Law, tolerance and query rate.
-        period_s: Time between two queries where `contact` gives no query rate, s.
+        step_s: Duration of a step of the tool, s; a slower query counts as the step.
     """
     if contact.law == "constraint":
         return math.inf
-    return contact.tolerance_m * (contact.query_rate_hz or 1.0 / period_s)
+    return contact.tolerance_m * min(contact.query_rate_hz or math.inf, 1.0 / step_s)
 
 
 def make_depth_warning(depth_m: float, tolerance_m: float) -> str:

@@ -1,5 +1,7 @@
 """The diagram between a plant's ports: what is in it, what it shows and refuses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cube_scene import CONTACT, CUBE, HALF, MASS, G, make_scene
@@ -60,6 +62,26 @@ def test_without_effects_there_is_only_contact():
     assert inputs(rendering) == INPUTS
     # A state of its own would be a sample of delay.
     assert rendering.CreateDefaultContext().num_total_states() == 0
+
+
+@pytest.mark.parametrize(
+    ("plant", "period_s", "query_rate_hz", "step_s"),
+    [
+        ("sampled", None, None, 1e-3),
+        # A period of effects makes a discrete plant no faster and no slower.
+        ("sampled", 1e-4, None, 1e-3),
+        ("sampled", 1e-2, None, 1e-3),
+        ("sampled", None, 250.0, 4e-3),
+        ("sampled", 1e-4, 10000.0, 1e-3),
+        ("continuous", 1e-4, None, 1e-4),
+    ],
+)
+def test_the_skin_speed_crosses_the_tolerance_in_one_step_of_the_plant(
+    plant, period_s, query_rate_hz, step_s
+):
+    contact = replace(CONTACT, query_rate_hz=query_rate_hz)
+    _, rendering = make_scene(config=PLANTS[plant], contact=contact, period_s=period_s)
+    assert rendering.skin_speed_m_per_s == pytest.approx(CONTACT.tolerance_m / step_s)
 
 
 def test_what_free_bodies_feel_comes_from_the_state_whatever_its_quaternions_length():
