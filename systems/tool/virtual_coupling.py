@@ -67,8 +67,17 @@ class VirtualCoupling(Diagram):
         Args:
             gains: Default gains of the spring and the damper.
             X_HT: Pose of the tool in the handle at which the spring rests.
+
+        Raises:
+            ValueError: The pose is not finite.
         """
         super().__init__()
+        if not np.isfinite(X_HT.GetAsMatrix34()).all():
+            raise ValueError(
+                "X_HT must be finite, has the translation"
+                f" {X_HT.translation().tolist()} m and the rotation"
+                f" {X_HT.rotation().matrix().tolist()}"
+            )
         self._X_HT = X_HT
         builder = DiagramBuilder()
         spring = builder.AddNamedSystem("spring", _SpringAndDamper(X_HT))

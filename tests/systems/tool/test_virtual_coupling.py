@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from coupling_samples import BR, KR, X_HT, X_WH, B, K
 from pydrake.common.eigen_geometry import AngleAxis
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
@@ -34,6 +34,19 @@ def evaluate(coupling, X_WT, V_WH=AT_REST, V_WT=AT_REST):
 def test_it_has_no_state_and_no_delay(coupling):
     assert coupling.CreateDefaultContext().num_total_states() == 0
     assert coupling.HasDirectFeedthrough(0, 1)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        RigidTransform([0.0, np.nan, 0.0]),
+        RigidTransform([0.0, np.inf, 0.0]),
+        RigidTransform(RollPitchYaw(np.nan, 0.0, 0.0), np.zeros(3)),
+    ],
+)
+def test_a_pose_that_is_not_finite_is_refused(bad):
+    with pytest.raises(ValueError, match=r"X_HT must be finite, .*(nan|inf)"):
+        VirtualCoupling(CouplingGains(K, B, KR, BR), bad)
 
 
 def test_the_handle_feels_the_reaction(coupling):
