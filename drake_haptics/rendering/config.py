@@ -11,6 +11,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
 from drake_haptics.rendering.haptic_rendering import HapticRendering
 from drake_haptics.scene.schema import (
@@ -121,7 +122,10 @@ def ApplyHapticRenderingConfig(
     Raises:
         ValueError: A value is invalid, as in `AddHapticRendering`; the message names
             the key.
+        TypeError: A value has the wrong type; the message names the key.
     """
+    require_kinds(config=(config, HapticRenderingConfig))
+    require_kinds(X_HT=(config.X_HT, Pose))
     require(config.role in _ROLES, "role", f"must be one of {', '.join(_ROLES)}")
     return AddHapticRendering(
         builder,

@@ -115,6 +115,18 @@ def test_a_wrong_role_is_named_in_code_too():
         )
 
 
+@pytest.mark.parametrize("wrong", [RigidTransform(), None])
+def test_a_pose_of_another_type_is_named_in_code(wrong):
+    scene = make_scene()
+    with pytest.raises(TypeError, match=r"^X_HT must be a .*\.Pose, is "):
+        ApplyHapticRenderingConfig(
+            HapticRenderingConfig(tool_body="tool", X_HT=wrong),
+            scene.builder,
+            scene.plant,
+            scene.scene_graph,
+        )
+
+
 def test_a_warning_names_the_line_of_the_caller():
     scene = make_scene()
     stiff = ContactParameters(stiffness_N_per_m=1e9)
