@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -17,6 +16,8 @@ from drake_haptics.cli.endings import ExitCode
 from drake_haptics.cli.options import (
     file_option,
     json_option,
+    load_set_scene,
+    refuse_overwriting,
     require_folder,
     require_writable,
     set_option,
@@ -100,6 +101,7 @@ def info(file: Path, json_file: str | None) -> None:
 
     FILE is a log of `run --log FILE`. It may be damaged, cut off, or still be written.
     """
+    refuse_overwriting([file])
     with progress_bar() as show:
         summary = summarize_log(file, show)
     write_json(summary.to_dict(), json_file)
@@ -147,13 +149,7 @@ def _print_summary(file: Path, summary: LogSummary) -> None:
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("scene", required=False, shell_complete=complete_scene)
 @set_option
-@click.option(
-    "--log",
-    "out",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="OUT",
-    help="Keep the log of the replay.",
-)
+@file_option("--log", "out", metavar="OUT", help="Keep the log of the replay.")
 @json_option()
 def replay(
     file: Path,
@@ -169,25 +165,23 @@ def replay(
     at all, to the last bit.
     """
     # Imported here, because help and the other commands do not need Drake.
-    from drake_haptics.scene.library import find_scene
-    from drake_haptics.scene.scene_file import load_scene
     from drake_haptics.simulation.replay_log import load_log_scene
     from drake_haptics.simulation.replay_log import replay as replay_log
 
+    refuse_overwriting([file])
     with progress_bar() as show:
         log = read_tick_log(file, show)
     warn_of_gaps(file, log.describe_gaps())
-    if out is not None and out.exists() and os.path.samefile(out, file):
-        raise HapticsError(
-            f"--log: {out} is the log that is replayed; give another file"
-        )
     if scene is None:
         for mesh in find_changed_meshes(log.header):
             click.secho(
                 f"Warning: {mesh} is not what it was recorded on", fg="yellow", err=True
             )
-    chosen = load_log_scene(log) if scene is None else load_scene(find_scene(scene))
-    chosen = set_values(chosen, settings)
+    chosen = (
+        set_values(load_log_scene(log), settings)
+        if scene is None
+        else load_set_scene(scene, settings)
+    )
     with progress_bar() as show:
         again = replay_log(log, chosen, out=out, progress=show)
     difference = None
@@ -224,6 +218,7 @@ def diff(
     where most and by how much. The clocks, which differ in every run, do not count, nor
     what a device told besides its handle.
     """
+    refuse_overwriting([a, b])
     with progress_bar() as show:
         logs = [read_tick_log(file, show) for file in (a, b)]
     for file, log in zip((a, b), logs, strict=True):
@@ -263,8 +258,7 @@ def csv(file: Path, out: str | None) -> None:
     if out is None:
         out = f"{file.stem}.csv"
         require_writable(Path(out), "--out")
-    if os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file):
-        raise HapticsError(f"--out: {out} is the log itself; give another file")
+    refuse_overwriting([file], {"--out": Path(out)})
     reader = TickLogReader(file)
     try:
         with (

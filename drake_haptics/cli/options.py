@@ -8,7 +8,7 @@ import math
 import os
 import re
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -16,6 +16,7 @@ import click
 
 from drake_haptics.cli.completion import complete_setting, complete_unit
 from drake_haptics.common.errors import HapticsError, SceneError
+from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 from drake_haptics.geometry.mesh.units import METERS_PER_UNIT
@@ -80,7 +81,13 @@ def max_triangles_option(function: _Function) -> _Function:
 def read_mesh(
     file: str, unit: str | None, scale: float | None, max_triangles: int | None
 ) -> Mesh:
-    """Reads the mesh of a command."""
+    """Reads the mesh of a command.
+
+    Raises:
+        HapticsError: An option of the command would overwrite the file.
+        drake_haptics.common.errors.MeshError: The mesh cannot be used.
+    """
+    refuse_overwriting([file])
     mesh = load_mesh(file, unit=unit, scale=scale)
     return mesh if max_triangles is None else decimate(mesh, max_triangles)
 
@@ -113,28 +120,67 @@ def json_option(
     )
 
 
-def file_option(name: str, **settings: Any) -> Callable[[_Function], _Function]:
+def file_option(*names: str, **settings: Any) -> Callable[[_Function], _Function]:
     """Adds an option that takes the path of a file to be written."""
     return click.option(
-        name,
+        *names,
         type=click.Path(dir_okay=False, path_type=Path),
-        metavar="FILE",
         callback=require_folder,
-        **settings,
+        **{"metavar": "FILE"} | settings,
     )
 
 
 def require_folder(
-    _: click.Context, option: click.Parameter, file: str | Path | None
+    ctx: click.Context, option: click.Parameter, file: str | Path | None
 ) -> str | Path | None:
     """Returns the file of an option, after checking that it can be written.
 
     Raises:
-        HapticsError: The file cannot be written; see `require_writable`.
+        HapticsError: The file cannot be written, see `require_writable`, or another
+            option writes it.
     """
     if file is not None and str(file) != "-":
         require_writable(Path(file), option.opts[0])
+        for other, path in _list_written(ctx).items():
+            if path.absolute() == Path(file).absolute():
+                raise HapticsError(
+                    f"{other} and {option.opts[0]}: each needs its own file"
+                )
     return file
+
+
+def refuse_overwriting(
+    inputs: Iterable[str | os.PathLike[str]], written: Mapping[str, Path] | None = None
+) -> None:
+    """Refuses an option of the running command that would overwrite an input.
+
+    Args:
+        inputs: Files that the command reads; those that do not exist are left out.
+        written: Files that it writes, by option. Defaults to those of the options.
+
+    Raises:
+        HapticsError: An option names one of them as the file to write.
+    """
+    files = [path for path in map(Path, inputs) if path.is_file()]
+    if written is None:
+        written = _list_written(click.get_current_context())
+    for option, path in written.items():
+        if path.is_file() and any(path.samefile(file) for file in files):
+            raise HapticsError(
+                f"{option}: {path} is an input of this command; give another file"
+            )
+
+
+def _list_written(ctx: click.Context) -> dict[str, Path]:
+    """Returns the files that the options read so far write, by option."""
+    written = {
+        option.opts[0]: ctx.params.get(option.name or "")
+        for option in ctx.command.params
+        if option.callback is require_folder
+    }
+    return {
+        name: Path(file) for name, file in written.items() if file not in (None, "-")
+    }
 
 
 def require_writable(path: Path, option: str) -> None:
@@ -211,28 +257,34 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
 
     Raises:
         SceneError: There is no such scene, or it cannot be used.
-        HapticsError: A setting is invalid; see `set_values`.
+        HapticsError: A setting is invalid, see `set_values`, or an option of the
+            command would overwrite the scene or one of its meshes.
     """
     from drake_haptics.scene.library import find_scene
     from drake_haptics.scene.scene_file import load_scene
 
-    return set_values(load_scene(find_scene(scene)), settings)
+    file = find_scene(scene)
+    refuse_overwriting([file])
+    return set_values(load_scene(file), settings)
 
 
 def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
     """Returns a scene with the changes of --set; the same one if there are none.
 
     Raises:
-        HapticsError: A setting has an unknown key or an invalid value.
+        HapticsError: A setting has an unknown key or an invalid value, or an option of
+            the command would overwrite a mesh of the scene.
     """
     from drake_haptics.scene.settings import change_scene
 
-    if not settings:
-        return scene
-    try:
-        return change_scene(scene, settings)
-    except SceneError as error:
-        raise HapticsError(f"--set {error}") from error
+    if settings:
+        try:
+            scene = change_scene(scene, settings)
+        except SceneError as error:
+            raise HapticsError(f"--set {error}") from error
+    meshes = [scene.tool.mesh, *(item.mesh for item in scene.environment)]
+    refuse_overwriting(map(resolve_package_url, meshes))
+    return scene
 
 
 def write_call(command: str, scene: str, settings: Sequence[str]) -> str:

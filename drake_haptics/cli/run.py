@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import click
@@ -16,7 +15,6 @@ from drake_haptics.cli.options import (
     set_option,
     unit_option,
 )
-from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.mesh.units import meters_per_unit
 
 _EXPLAINED_S = 2.0
@@ -132,11 +130,6 @@ def run(
         for given in (tool, environment, unit, tool_scale, environment_scale)
     ):
         raise click.UsageError("give either SCENE or --tool and --environment")
-    if write_scene is not None and _is_same(scene, write_scene):
-        # The file would lose its comments.
-        raise HapticsError(
-            f"--write-scene: {write_scene} is the scene that runs; give another file"
-        )
     if explain:
         headless, duration = True, duration or _EXPLAINED_S
     # Imported here, because it takes a second, which help and Tab must not take.
@@ -161,14 +154,4 @@ def run(
         json_file=json_file,
         pieces=pieces,
         port=port,
-    )
-
-
-def _is_same(scene: str | None, file: Path) -> bool:
-    """Returns whether a scene is given as this file."""
-    return (
-        scene is not None
-        and file.exists()
-        and os.path.exists(scene)
-        and file.samefile(scene)
     )

@@ -18,6 +18,7 @@ from drake_haptics.cli.endings import ExitCode, lasting_interrupt, naming
 from drake_haptics.cli.options import (
     load_set_scene,
     name_scale_options,
+    refuse_overwriting,
     set_values,
     write_json,
 )
@@ -126,20 +127,12 @@ def run_scene(
     """Runs a scene with the options of `run`, and prints the results.
 
     Raises:
-        HapticsError: Two options name one file.
+        HapticsError: An option would overwrite the log that is replayed.
         click.ClickException: The simulation became unstable, or the device is at fault
             at the end.
     """
-    written = (record, log, scene_file, json_file)
-    files = [Path(file).absolute() for file in written if file]
-    if len(set(files)) < len(files):
-        raise HapticsError(
-            "--record, --log, --write-scene and --json: each needs its own file"
-        )
-    if log is not None and device == f"replay:{log}":
-        raise HapticsError(
-            f"--log: {log} is the log that is replayed; give another file"
-        )
+    if device is not None:
+        refuse_overwriting([device.removeprefix("replay:")])
     console = make_console(stderr=json_file == "-")
     page = None
     if not headless:

@@ -113,7 +113,7 @@ def test_csv_is_named_after_its_log(log, tmp_path, monkeypatch):
 def test_a_table_does_not_take_the_place_of_its_log(log):
     before = log.read_bytes()
     answer = invoke("log", "csv", log, "--out", log)
-    assert answer.exit_code == 1 and "is the log itself" in answer.output
+    assert answer.exit_code == 1 and "is an input of this" in answer.output
     assert log.read_bytes() == before
 
 
@@ -162,10 +162,10 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
         (["info", "none.tick"], "none.tick: No such file"),
         (["info", __file__], "is not a tick log; record one with"),
         (["info", "."], "Is a directory"),
-        (["replay", "LOG", "--log", "LOG"], "is the log that is replayed"),
+        (["replay", "LOG", "--log", "LOG"], "is an input of this command"),
         (["replay", "LOG", "--set", "contact.stifness=1"], "did you mean"),
         (["replay", "LOG", "no_such_scene"], "neither a scene file in"),
-        (["replay", "LOG", "--log", "none/out.tick"], "No such file or directory"),
+        (["replay", "LOG", "--log", "none/out.tick"], "--log: there is no folder"),
         (["diff", "LOG", "LOG", "--plot", "none/a.png"], "--plot: there is no folder"),
         (["diff", "LOG", "LOG", "--plot", "a.xyz"], "--plot: Format 'xyz'"),
         (["csv", "LOG", "--out", "none/out.csv"], "--out: there is no folder none"),
@@ -235,7 +235,7 @@ def test_a_recorded_handle_can_be_held(log, tmp_path):
     np.testing.assert_allclose(again, recorded, atol=1e-14)
     answer = invoke(*run, f"replay:{log}", "--log", log)
     assert answer.exit_code == 1
-    assert "is the log that is replayed" in answer.output
+    assert "is an input of this command" in answer.output
     assert len(read_tick_log(log).rows) == 1500
 
 

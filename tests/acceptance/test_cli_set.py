@@ -128,7 +128,7 @@ def test_accuracy_is_that_of_the_changed_scene_and_its_page_says_so(
             )
             for key in ("environment.mesh", "environment[0].mesh")
         ),
-        (["copy.yaml", "--write-scene", "copy.yaml"], "is the scene that runs"),
+        (["copy.yaml", "--write-scene", "copy.yaml"], "is an input of this"),
         (["sphere_pen", "--write-scene", "a", "--log", "a"], "its own file"),
     ],
 )  # fmt: skip
