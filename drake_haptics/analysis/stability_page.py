@@ -77,6 +77,19 @@ def _describe_nearest_limit(stability: SceneStability) -> str:
         if nearest.gain_margin >= 1.0
         else f"Stable in this contact {held}, but not against {nearest.against}."
     )
+    if nearest.gain_margin == 0.0:
+        # Another gain is too large there: its limit is the one to know.
+        known = [
+            limit
+            for limit in limits
+            if limit.against == nearest.against and 0.0 < limit.gain_margin < 1.0
+        ]
+        if not known:
+            return (
+                f"{where} There no stiffness of {nearest.kind} is stable with the"
+                " coupling's other gains."
+            )
+        nearest = min(known, key=lambda limit: limit.gain_margin)
     return (
         f"{where} The limit of the coupling's stiffness of {nearest.kind} is"
         f" {format_limit(nearest.eigenvalue)} {nearest.unit} against {nearest.against};"

@@ -60,7 +60,7 @@ class StiffnessLimits:
             rigid wall (`SampledWall`).
         formula: (b + B) / (T/2 + t_d) of the same axis (Gil et al. 2004).
         limited_by: Frequency and moving parts of the motion that grows beyond the
-            limit.
+            limit; of the scene's if that is 0, because another gain is too large.
     """
 
     kind: Kind
@@ -154,6 +154,8 @@ def find_stiffness_limits(
             lambda value: analyze(value).measure_growth(), limit
         )
         words = describe_motion(find_modes(analyze(limit).linearization)[0])
+    elif limit == 0.0 and not math.isnan(growth(stiffness)):
+        words = describe_motion(find_modes(analyze(stiffness).linearization)[0])
     elif reasons:
         words = f"beyond it nothing can be told: {reasons[min(reasons)]}"
     haptic, context = build_with_same_load(held)

@@ -88,6 +88,25 @@ def test_a_limit_below_the_scenes_stiffness_is_a_warning(sample):
     assert "the scene has 800 N/m, a margin of 0.5." in words
 
 
+def test_the_limit_is_of_the_gain_that_is_too_large(sample):
+    # At 800 N/m no rotational stiffness is stable there, however low it is.
+    none = replace(make_limits(0.0), kind="rotation", stiffness=1.0)
+    words = describe_verdict(replace(sample, limits=(none, make_limits(400.0))))
+    assert ", but not against a rigid wall. The limit" in words
+    assert "of translation is 400 N/m against a rigid wall; the scene has 800" in words
+
+
+def test_gains_of_which_none_has_a_stable_value_get_no_number(sample):
+    beside = make_limits(400.0, "this contact")
+    for limits in [(make_limits(0.0),), (beside, make_limits(0.0))]:
+        words = describe_verdict(replace(sample, limits=limits))
+        assert "none is stable" not in words and "margin" not in words
+        assert (
+            "but not against a rigid wall. There no stiffness of translation is stable"
+            " with the coupling's other gains." in words
+        )
+
+
 def test_the_situation_is_told(sample):
     words = describe_situation(sample)
     assert "phantom_premium_1_5_6dof in a firm grip at 1000 Hz" in words

@@ -85,6 +85,14 @@ def test_where_nothing_can_be_told_beyond_it_says_why(held, monkeypatch):
     assert found.limited_by.endswith("told: the arm does not reach that far")
 
 
+def test_where_another_gain_is_too_large_says_what_grows(held):
+    coupling = replace(held.scene.coupling, stiffness_N_per_m=1e5)
+    stiff = replace(held, scene=replace(held.scene, coupling=coupling))
+    limits = find_stiffness_limits(stiff, "rotation", "a rigid wall")
+    assert limits.eigenvalue == 0.0 and limits.gain_margin == 0.0
+    assert " Hz; mostly " in limits.limited_by
+
+
 @pytest.mark.parametrize("kind", ["translation", "rotation"])
 def test_a_coupling_without_that_stiffness_has_no_limit(held, kind):
     coupling = replace(
