@@ -54,7 +54,7 @@ class EnergyLedger:
             loop.haptic_tool.dynamics,
             self._gains.coupling,
             pose_to_vector(loop.virtual_coupling.X_HT),
-            loop.haptic_tool.period_s,
+            loop.haptic_tool.step_period_s,
             list(sources),
         )
         self._tool = loop.haptic_tool.GetMyContextFromRoot(root)
@@ -75,10 +75,11 @@ class EnergyLedger:
         )
 
     def add(self) -> None:
-        """Adds the tick since the last call; the first call only begins one.
+        """Adds the tool's step since the last call; the first call only begins one.
 
-        Call it once after `Simulator.Initialize` and then after every tick, as from a
-        monitor. The next tick needs everything that it reads, so that nothing is
+        Call it once after `Simulator.Initialize` and then after every step of the tool,
+        which is a tick unless `device.servo_rate_hz` gives it more, as from a monitor.
+        The next step needs everything that it reads, so that nothing is
         computed twice.
         """
         gains = self._read_gains()

@@ -173,17 +173,25 @@ def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float
 
 def _make_monitor(
     haptic: HapticDiagram,
-    measure: Callable[[Context, float], None],
+    measure: Callable[[Context, float, bool], None],
     on_tick: Callable[[Context], bool | None] | None,
     pace: RealTimePacer | None,
 ) -> Callable[[Context], EventStatus | None]:
-    """Returns a function that the simulator calls after each tick."""
+    """Returns a function that the simulator calls after each step of the tool."""
     start_s = time.perf_counter()
+    step_s = haptic.loop.haptic_tool.step_period_s
+    steps_per_tick = round(haptic.period_s / step_s)
 
     def monitor(context: Context) -> EventStatus | None:
         nonlocal start_s
         now_s = time.perf_counter()
-        measure(context, now_s - start_s)
+        ends_tick = (
+            steps_per_tick == 1
+            or round(context.get_time() / step_s) % steps_per_tick == 0
+        )
+        measure(context, now_s - start_s, ends_tick)
+        if not ends_tick:
+            return None
         start_s = now_s
         if on_tick is not None and on_tick(context):
             return EventStatus.ReachedTermination(
@@ -204,8 +212,8 @@ def _make_measure(
     root: Context,
     statistics: RunStatistics,
     ledger: EnergyLedger | None,
-) -> Callable[[Context, float], None]:
-    """Returns a function that records a tick's values from the context."""
+) -> Callable[[Context, float, bool], None]:
+    """Returns a function that records a step, and a tick's values if it ends one."""
     loop = haptic.loop
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
     hold = loop.device.GetSubsystemByName("rendered_force_hold")
@@ -235,7 +243,7 @@ def _make_measure(
             contacts.query_seconds,
         )
 
-    def measure(context: Context, tick_s: float) -> None:
+    def measure(context: Context, tick_s: float, ends_tick: bool) -> None:
         shown = hold_context.get_discrete_state_vector().value().tolist()
         # A handle that is not finite makes the tool's state not finite, too.
         tool_state = tool_context.get_discrete_state(0).value()
@@ -247,11 +255,13 @@ def _make_measure(
                 " finite",
                 statistics,
             )
-        # These are cached for the next tick, so that nothing is computed twice.
-        contacts, clusters, least_m, query_s = summarize(tool_state)
-        statistics.add(tick_s, query_s, contacts, clusters, least_m, shown)
-        if shed_context is not None:
-            statistics.add_shed(shed_context.get_discrete_state_vector().value()[0])
+        if ends_tick:
+            # These are cached for the next tick, so that nothing is computed twice.
+            contacts, clusters, least_m, query_s = summarize(tool_state)
+            statistics.add(tick_s, query_s, contacts, clusters, least_m, shown)
+            if shed_context is not None:
+                shed = shed_context.get_discrete_state_vector().value()[0]
+                statistics.add_shed(shed)
         if ledger is not None:
             ledger.add()
 

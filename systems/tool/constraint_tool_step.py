@@ -156,6 +156,7 @@ class ConstraintToolStep(Diagram):
         self._period_s = period_s
         self._X_HT = X_HT
         step_s = servo_period_s or period_s
+        self._step_period_s = period_s if start_servo is not None else step_s
         resting = {
             i: pose_to_vector(item.X_WO)
             for i, item in enumerate(objects)
@@ -212,6 +213,11 @@ class ConstraintToolStep(Diagram):
     def period_s(self) -> float:
         """The tick, s."""
         return self._period_s
+
+    @property
+    def step_period_s(self) -> float:
+        """Period at which Drake steps the tool, s, at most the tick."""
+        return self._step_period_s
 
     @property
     def X_HT(self) -> RigidTransform:

@@ -104,6 +104,11 @@ class HapticTool(Diagram):
         """The tick, s."""
         return self._period_s
 
+    @property
+    def step_period_s(self) -> float:
+        """Period at which Drake steps the tool, s, which is the tick."""
+        return self._period_s
+
 
 STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
 

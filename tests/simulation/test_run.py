@@ -11,6 +11,7 @@ from fake_clock import FakeClock
 
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.settings import change_scene
 from drake_haptics.simulation.run import RunError, make_simulator, run
 from drake_haptics.simulation.statistics import RunStatistics
 
@@ -59,6 +60,30 @@ def test_the_energy_of_every_tick_is_booked(haptic):
     assert tool["stored"] > 0.0
     assert tool["net"] == pytest.approx(tool["stored"] + tool["lost"], rel=1e-12)
     assert books["device"]["in"] > books["contact"]["in"] > 0.0
+
+
+def test_steps_between_ticks_are_no_ticks(tmp_path):
+    """A run whose tool is stepped four times a tick has the motion of a fast one."""
+    path = [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 2e-3), (0.05, 0.0, 0.0, 0.0)]
+    scene = over_a_plate(tmp_path, path)
+    scene = change_scene(scene, ["contact.law=constraint", "device.servo_rate_hz=4000"])
+    ends = []
+    between = run(
+        BuildHapticDiagram(scene),
+        0.1,
+        energy=True,
+        on_tick=lambda context: ends.append(context.get_time()),
+    )
+    assert (between.ticks, between.duration_s) == (100, pytest.approx(0.1))
+    np.testing.assert_allclose(ends, np.arange(1, 101) * 1e-3, atol=1e-12)
+    pace = RealTimePacer(1e-3)
+    run(BuildHapticDiagram(scene), 0.02, pace=pace)
+    assert pace.ticks == 19  # the first only begins
+    fast = change_scene(scene, ["device.servo_rate_hz=", "device.rate_hz=4000"])
+    fine = run(BuildHapticDiagram(fast), 0.1, energy=True)
+    assert (fine.ticks, fine.duration_s) == (400, pytest.approx(0.1))
+    assert fine.max_force_N > 0.1
+    assert between.energy_J == fine.energy_J
 
 
 def test_a_run_in_parts_measures_what_one_does(haptic):
