@@ -162,7 +162,7 @@ def replay(
 
     FILE is a log; SCENE another scene than the recorded one (a shipped scene's name or
     a file). Then says how the replay differs from the record: in the same scene not
-    at all, to the last bit.
+    at all, to the last bit, unless device.servo_rate_hz steps the tool between ticks.
     """
     # Imported here, because help and the other commands do not need Drake.
     from drake_haptics.simulation.replay_log import load_log_scene
