@@ -71,7 +71,7 @@ def find_knee_points(front: Sequence[tuple[float, float]]) -> list[int]:
     front is scaled to a square of side 1. The first knee is the point farthest below
     the straight line between the ends (Satopää et al. 2011), if it is at least a tenth
     below; further ones are found likewise on each side of it (Douglas and Peucker
-    1973). The units of the axes do not matter. There is none if all times are alike.
+    1973). The units of the axes do not matter. Times that are alike have no knee.
 
     Args:
         front: Positive times and errors, time rising and error falling.

@@ -72,8 +72,8 @@ _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 class Measurement:
     """Measures one quantity of a setting, as a task of `run_study`.
 
-    The scene's hand stops at the place for the stable stiffness, which is not sought if
-    there is none.
+    The scene's hand stops at the place for the stable stiffness; without such a place
+    this is not sought.
     """
 
     scene: Scene

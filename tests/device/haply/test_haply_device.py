@@ -193,7 +193,19 @@ def test_a_closed_device_shows_nothing_and_stays_closed():
         assert len(mass.forces) == count
 
 
-def test_a_device_that_is_closed_while_its_service_is_silent_ends_at_zero_force():
+@pytest.mark.parametrize("is_late", [False, True])
+def test_a_device_that_is_closed_while_its_service_is_silent_ends_at_zero_force(
+    monkeypatch, is_late
+):
+    """A late service sees the last message and the end of the connection at once."""
+
+    def expect_nothing_late(_, connection):
+        if is_closed.is_set():
+            connection.recv_events_thread.join()
+
+    is_closed = threading.Event()
+    if is_late:
+        monkeypatch.setattr(HaplyService, "expect_nothing", expect_nothing_late)
     with make_service() as service:
         mass = service.devices["049D"]
         device = open_device(service)
@@ -204,29 +216,7 @@ def test_a_device_that_is_closed_while_its_service_is_silent_ends_at_zero_force(
         )
         assert mass.forces[-1][1].any()
         device.close()
-        service.answers.set()
-        wait_until(lambda: not mass.forces[-1][1].any())
-
-
-def test_a_zero_force_before_the_end_reaches_a_service_that_is_late(monkeypatch):
-    """As above, where the service sees message and end of the connection at once."""
-
-    def expect_nothing_late(_, connection):
-        if device_is_closed.is_set():
-            connection.recv_events_thread.join()
-
-    device_is_closed = threading.Event()
-    monkeypatch.setattr(HaplyService, "expect_nothing", expect_nothing_late)
-    with make_service() as service:
-        mass = service.devices["049D"]
-        device = open_device(service)
-        wait_until(lambda: mass.largest_N > 0.5, lambda: press(device))
-        service.answers.clear()
-        wait_until(
-            lambda: is_in(device, GateState.FAULT, Fault.DEVICE), lambda: press(device)
-        )
-        device.close()
-        device_is_closed.set()
+        is_closed.set()
         service.answers.set()
         wait_until(lambda: not mass.forces[-1][1].any())
 
