@@ -59,6 +59,7 @@ class GripMargins:
     """Margins of a coupling in one grip.
 
     Attributes:
+        grip: Name of the grip.
         stiffness: Largest stable stiffness over the chosen one, with the chosen B.
         gain: The largest stable factor on both K and B.
         largest_delay_s: The longest stable delay, s.
@@ -124,8 +125,8 @@ def design_axis(
         period_s: T, s.
         delay_s: t_d on top of the hold, s.
         margin: Factor up to which the gains must be stable, above 1.
-        passive_in: Grip in which the coupling must also be passive; None for no such
-            grip.
+        passive_in: Name of a grip in which the coupling must also be passive; None for
+            no such grip.
 
     Raises:
         ValueError: No stiffness has the margin.

@@ -25,6 +25,9 @@ def calc_delay_margin(loop: HeldLoop) -> float:
     The wrench that the hold samples is shown later by that delay; nothing else changes.
     The result is infinite if 50 periods are not enough, and 0 if the loop is already
     unstable.
+
+    Args:
+        loop: The loop at its equilibrium.
     """
 
     def excess(delay: float) -> float:
@@ -45,7 +48,11 @@ def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
     """Returns the map of one period with the device's wrench delayed.
 
     The state is that of the linearization, then the wrenches (6 each) that were sampled
-    and not yet shown, newest first. The delay is in periods, and need not be whole.
+    and not yet shown, newest first.
+
+    Args:
+        loop: The loop at its equilibrium.
+        delay: Delay in periods, at least 0; it need not be whole.
 
     Raises:
         ValueError: The delay is negative.

@@ -57,7 +57,10 @@ class FeltImpedance:
 
 @on_one_blas_thread
 def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
-    """Calculates the impedance that the loop of a simulated device shows at its handle.
+    """Calculates the impedance that a loop shows at the handle.
+
+    Args:
+        loop: The loop of a scene with a simulated device.
 
     Raises:
         ValueError: The arm is singular at the equilibrium.

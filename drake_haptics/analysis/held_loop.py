@@ -181,7 +181,7 @@ class HeldLoop:
     Attributes:
         haptic: The diagram.
         context: Its root context, at the equilibrium.
-        linearization: Its linear map over one period.
+        linearization: Linearization over one period about the equilibrium.
     """
 
     haptic: HapticDiagram
@@ -217,7 +217,7 @@ class HeldLoop:
         )
 
     def _make_simulator(self, context: Context) -> Simulator:
-        """Returns a simulator that is as accurate as eigenvalues."""
+        """Returns a simulator that is accurate enough to compare with eigenvalues."""
         simulator = Simulator(self.haptic.diagram, context)
         step_s = self.linearization.period_s / _STEPS_PER_TICK
         ResetIntegratorFromFlags(simulator, "runge_kutta3", step_s)
@@ -255,7 +255,11 @@ class CouplingGrowth:
     """Calculates the growth of a held scene's loop for a stiffness and a damping.
 
     It is made for `calc_z_width`: it can be pickled, and each process holds the scene
-    once, its hand stopped at `time_s`, s.
+    once.
+
+    Attributes:
+        scene: The scene.
+        time_s: Time at which the hand stops, s.
     """
 
     scene: Scene
@@ -264,7 +268,11 @@ class CouplingGrowth:
     __repr__ = one_line
 
     def __call__(self, stiffness: float, damping: float) -> dict[str, Any]:
-        """Returns the growth per tick with gains of translation, N/m and N·s/m.
+        """Returns the growth per tick.
+
+        Args:
+            stiffness: Stiffness of the coupling in translation, N/m.
+            damping: Damping of the coupling in translation, N·s/m.
 
         Raises:
             ValueError: There is no equilibrium.

@@ -107,7 +107,8 @@ def hold_scene(
 
     The path until then is simulated as in a run, so that the tool touches from the side
     from which it came. If the tool does not settle with the scene's coupling, softer
-    ones are tried; `held_loop.build_with_same_load` then restores the scene's.
+    ones are tried; `drake_haptics.analysis.held_loop.build_with_same_load` then
+    restores the scene's.
 
     Args:
         scene: The scene to hold.
@@ -115,7 +116,8 @@ def hold_scene(
             Defaults to the time of the firmest contact at which the tool comes to rest;
             on a ridge it may rock between two facets forever.
         settle_s: Time for the tool to come to rest, s.
-        progress: Function of the current work and the share done, from 0 to 1.
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
 
     Raises:
         ValueError: The time is not on the path, the tool does not come to rest, or a
@@ -175,9 +177,11 @@ def _find_firm_places(scene: Scene) -> list[float]:
 
 
 def stop_hand(scene: Scene, time_s: float) -> Scene:
-    """Returns a scene whose hand follows its path and stops at a time, s.
+    """Returns a scene whose hand follows its path and stops at a time.
 
-    The device's base does not move.
+    Args:
+        scene: Scene to change; the device's base does not move.
+        time_s: Time of the stop, s, not after the path's end.
 
     Raises:
         ValueError: The time is not on the path.

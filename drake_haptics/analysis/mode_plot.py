@@ -38,6 +38,9 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     Args:
         linear: The map from `linearize_sampled` or `calc_monodromy`.
         axes: The axes to draw on. Defaults to new ones.
+
+    Returns:
+        The axes.
     """
     axes = find_axes(axes, (6.0, 6.0))
     _draw_grid(axes, linear.period_s)

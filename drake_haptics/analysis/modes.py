@@ -75,7 +75,8 @@ def check_return(
         tolerance: Bound of the change, relative to the state's size or 1.
 
     Raises:
-        ValueError: A state changes by more; the message names the worst.
+        ValueError: A state changes by more; the message names the one that changes
+            most.
     """
     relative = np.abs(change) / np.maximum(np.abs(x), 1.0)
     worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
@@ -262,10 +263,14 @@ class Mode:
 
 @on_one_blas_thread
 def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
-    """Returns the modes of a map from `linearize_sampled` or `calc_monodromy`.
+    """Returns the modes of a linear map over a period.
 
-    Motions are first, by decreasing growth; then neutral modes, memories, and lengths
-    of quaternions. A conjugate pair is one mode.
+    Args:
+        linear: The map from `linearize_sampled` or `calc_monodromy`.
+
+    Returns:
+        Motions first, by decreasing growth; then neutral modes, memories, and lengths
+        of quaternions. A conjugate pair is one mode.
     """
     require_kinds(
         "linearize_sampled and calc_monodromy make one", linear=(linear, PeriodMap)
@@ -290,7 +295,8 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
 def describe_motion(mode: Mode) -> str:
     """Returns the frequency of a motion and what moves, as in "245 Hz; mostly ...".
 
-    It is meant for the limit of stability, where a motion neither grows nor dies out.
+    It is meant for a motion at the limit of stability, which neither grows nor dies
+    out.
     """
     swings = mode.frequency_hz > 0.0
     rate = f"{mode.frequency_hz:.3g} Hz" if swings else "without swing"

@@ -58,6 +58,10 @@ def find_hyperperiod(
 ) -> float:
     """Returns the smallest common multiple of all periods, s, or checks a given one.
 
+    Args:
+        timings: Timings of all periodic updates.
+        hyperperiod_s: Time to return if it is a multiple of all periods, s.
+
     Raises:
         ValueError: `hyperperiod_s` is not a common period; or it is not given, and
             there are no periods, or no common multiple below 10000 of the shortest.

@@ -32,7 +32,7 @@ from drake_haptics.common.value_checks import check_positive
 
 
 def check_system_and_context(diagram: System, context: Context) -> None:
-    """Checks that the arguments are a system and one of its contexts.
+    """Raises an error unless the arguments are a system and one of its contexts.
 
     Raises:
         TypeError: An argument has the wrong type.
@@ -100,7 +100,7 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
 
     Args:
         timings: The timings that `find_timings` found.
-        period_s: T, s; only needed for a system without periodic updates.
+        period_s: The period, s; only needed for a system without periodic updates.
 
     Raises:
         ValueError: There are several periods or an offset; there is no period and
@@ -144,7 +144,10 @@ def check_events(system: System, context: Context, period_s: float) -> None:
     which none is due; Drake counts what ran. Publish events run, too. An unrestricted
     update with a larger offset is not found.
 
-    The discrete updates of the system have the given period and no offset.
+    Args:
+        system: A system whose periodic discrete updates have one period and no offset.
+        context: Its root context; only a clone is simulated.
+        period_s: The period, s.
     """
     clone = context.Clone()
     clone.SetTime(0.0)
@@ -257,8 +260,11 @@ def explain_drake_errors(doing: str) -> Iterator[None]:
     """Raises a `ValueError` with the reason if Drake would end the program.
 
     It is also a decorator. A `SystemExit` that is not Drake's passes, as does a
-    `RuntimeError` whose text is unknown, since it is probably the user's. The message
-    begins with the work, such as "linearizing the diagram".
+    `RuntimeError` whose text is unknown, since it is probably the user's.
+
+    Args:
+        doing: Description of the work for the message, such as "linearizing the
+            diagram".
 
     Raises:
         ValueError: Drake failed; the message says what to change, then quotes Drake.

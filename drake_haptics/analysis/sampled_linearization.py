@@ -230,11 +230,13 @@ def _find_input(
 
 
 def _find_output(system: System, chosen: int | str | None) -> OutputPort | None:
+    """Returns the vector output port with an index or a name."""
     ports = [system.get_output_port(i) for i in range(system.num_output_ports())]
     return _find_port("output_port", ports, chosen)
 
 
 def _find_port(kind: str, ports: list[_Port], chosen: int | str | None) -> _Port | None:
+    """Returns the vector port with an index or a name."""
     if chosen is None:
         return None
     names = [port.get_name() for port in ports]

@@ -71,9 +71,12 @@ class SampledMap:
     ):
         """Reads state and input.
 
-        The timings are those of `find_timings`. The ports are vector ports of the
-        system; the input has a value. The system's AutoDiffXd twin is made on first
-        use.
+        Args:
+            system: Any system; its AutoDiffXd twin is made on first use.
+            context: Its root context; only a clone is used.
+            timings: The timings that `find_timings` found.
+            input_port: A vector port of the system, which has a value.
+            output_port: A vector port of the system.
 
         Raises:
             ValueError: A system has several timings, which pydrake cannot evaluate one
@@ -119,7 +122,8 @@ class SampledMap:
     ) -> SampledValues:
         """Returns the derivatives of the three functions, with the arguments of `calc`.
 
-        A row without derivatives is zero; `check_derivatives` finds wrong ones.
+        A row without derivatives is zero; `check_derivatives` finds out whether it
+        should be.
 
         Raises:
             RuntimeError: A system has no AutoDiffXd twin, or cannot be evaluated.

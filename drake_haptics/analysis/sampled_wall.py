@@ -141,12 +141,15 @@ def _calc_flow(
 
 @on_one_blas_thread
 def calc_largest_stiffness(wall: SampledWall) -> float:
-    """Returns the stiffness K below which every wall like this one is stable.
+    """Returns the stiffness K below which every wall is stable.
 
     It tries stiffer walls, a factor of 1.09 apart, until one is unstable, and bisects
     that step to 1e-10 of K. A stable wall beyond an unstable one would be missed (tests
     over random walls found no such case). The result is zero if even the softest is
     unstable, as with too much damping of the wall.
+
+    Args:
+        wall: The wall, whose stiffness is not used.
     """
     # The search ends, because a stiff enough spring that is held for a period throws
     # the handle back farther than it was.
@@ -161,8 +164,11 @@ def calc_largest_stiffness(wall: SampledWall) -> float:
 def calc_gain_margin(wall: SampledWall) -> float:
     """Returns the factor on both K and B up to which the wall is stable.
 
-    It is searched for as in `calc_largest_stiffness`, from factors far below one. It is
-    above 1 for a stable wall, and infinite if both gains are zero.
+    It is searched for as in `calc_largest_stiffness`, from factors far below one, and
+    is infinite if both gains are zero.
+
+    Args:
+        wall: The wall; the margin is above 1 if it is stable.
     """
     K, B, T = wall.stiffness, wall.wall_damping, wall.period_s
     if K == B == 0.0:
@@ -183,6 +189,9 @@ def calc_largest_delay(wall: SampledWall) -> float:
     and bisects that step to a relative 1e-10. The result is zero if the wall is
     unstable without delay, and infinite if its loop gain is below one at every
     frequency, as for a soft wall in a firm hand.
+
+    Args:
+        wall: The wall, whose delay is not used.
     """
     if _calc_largest_loop_gain(wall) < 1.0:
         return math.inf

@@ -169,13 +169,14 @@ def analyze_scene(
             map.
         executor: Executor that computes the map, see `run_study`.
         store: Store of the map's results, see `run_study`.
-        progress: Function of the current work and the share done, from 0 to 1.
+        progress: Function that is called with the current work and the share done, from
+            0 to 1.
 
     Raises:
         ValueError: The tool does not come to rest, or there is no equilibrium, or
             `map_size` is 1 or negative.
-        SceneError: The scene cannot be built.
-        RunError: The scene diverges before the tool touches.
+        SceneError: The scene cannot be built. drake_haptics.simulation.run.RunError:
+        The scene diverges before the tool touches.
     """
     if map_size < 0 or map_size == 1:
         raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")

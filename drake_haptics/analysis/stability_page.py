@@ -86,7 +86,7 @@ def _describe_nearest_limit(stability: SceneStability) -> str:
         ]
         if not known:
             return (
-                f"{where} There no stiffness of {nearest.kind} is stable with the"
+                f"{where} No stiffness of {nearest.kind} is stable there with the"
                 " coupling's other gains."
             )
         nearest = min(known, key=lambda limit: limit.gain_margin)

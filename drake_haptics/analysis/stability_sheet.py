@@ -45,11 +45,11 @@ def draw_sheet(
         title: Title above all panels.
         linearization: Linear map of one tick.
         limits: Limits of the coupling's stiffness.
-        frequencies_Hz: (n,) increasing, Hz.
-        damping_usage: (n,) share of the damping that passivity needs.
+        frequencies_Hz: (n,) frequencies, increasing, Hz.
+        damping_usage: (n,) share of the damping that passivity needs at each frequency.
         map: Growth over stiffness and damping; None leaves its panel out.
-        bounds: Theoretical bounds of the device in its hand.
-        gains: K, N/m, and B, N·s/m, of the scene.
+        bounds: Theoretical bounds of the device in its hand, for the map.
+        gains: K, N/m, and B, N·s/m, of the scene, for the map.
     """
     from matplotlib.figure import Figure
 
@@ -75,6 +75,7 @@ def draw_sheet(
 
 
 def _plot_usage(frequencies_Hz: np.ndarray, usage: np.ndarray, axes: Axes) -> None:
+    """Draws the share of the available damping that passivity needs."""
     axes.plot(
         frequencies_Hz,
         usage,
@@ -130,6 +131,7 @@ def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
 
 
 def _put_legend_below(axes: Axes) -> None:
+    """Puts the legend below the axes, where it hides no data."""
     axes.legend(
         loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=_LEGEND_SIZE
     )

@@ -113,7 +113,7 @@ def find_stiffness_limits(
         held: The held scene, whose other gains stay.
         kind: Kind of the stiffness that is raised.
         against: Name of the body that the tool touches.
-        progress: Function of the share done, from 0 to 1.
+        progress: Function that is called with the share done, from 0 to 1.
 
     Raises:
         ValueError: The scene's coupling has no stiffness of that kind.

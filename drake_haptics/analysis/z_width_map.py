@@ -151,8 +151,7 @@ class ZWidth:
     and Brown 1994). Units are those of translation, or N·m/rad and N·m·s/rad.
 
     Attributes:
-        stiffness: K, (nK,), rising, N/m.
-        damping: B, (nB,), rising, N·s/m.
+        stiffness: K, (nK,), rising, N/m. damping: B, (nB,), rising, N·s/m.
         spectral_radius: (nB, nK), of one period; stable below 1; NaN if the point could
             not be evaluated.
         passive_damping: (nB, nK), damping that device and hand must have for the point
@@ -169,12 +168,15 @@ class ZWidth:
     __repr__ = one_line
 
     def largest_stable_stiffness(self) -> np.ndarray:
-        """Returns the stiffness (nB,) below which the whole map is stable, N/m.
+        """Returns the stiffness below which the whole map is stable, for each damping.
 
         That is where the spectral radius first crosses 1, interpolated along K between
-        two points. It is infinite if the map is stable to its end; NaN if even the
-        lowest stiffness is unstable, or a point before the crossing could not be
-        evaluated.
+        two points.
+
+        Returns:
+            (nB,), N/m. Infinite if the map is stable to its end; NaN if even the lowest
+            stiffness is unstable, or a point before the crossing could not be
+            evaluated.
         """
         return np.array([self._cross_one(radius) for radius in self.spectral_radius])
 
@@ -327,6 +329,7 @@ class _Point:
     evaluate: Callable[[float, float], Mapping[str, float]]
 
     def __call__(self, task: list[float]) -> dict[str, Any]:
+        """Returns the results for (K, B), or the reason why there are none."""
         try:
             found = self.evaluate(*task)
         except ValueError as error:

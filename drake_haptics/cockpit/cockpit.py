@@ -125,6 +125,7 @@ class Cockpit:
         name: str,
         locked: str = "",
     ):
+        """Begins without a diagram."""
         self.steering = Steering(changes, holder, picture, locked)
         self._page = page
         self._changes = changes
@@ -153,7 +154,11 @@ class Cockpit:
     ) -> None:
         """Begins a segment, of a diagram of the scene as it is now.
 
-        In a restart the tool begins where the handle is.
+        Args:
+            haptic: The diagram that runs.
+            statistics: Statistics of the run.
+            pace: Pacer of the run.
+            is_restart: Whether the tool begins where the handle is.
         """
         if is_restart:
             found = make_start_warnings(haptic)
@@ -212,6 +217,7 @@ class Cockpit:
         self._page.tell("state", state)
 
     def _greet(self) -> None:
+        """Sends the page what can be shown and changed."""
         greeting = make_setup_message(
             self._changes,
             name=self._name,

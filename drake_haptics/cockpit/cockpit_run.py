@@ -130,8 +130,9 @@ class CockpitRun:
             pace: Pacer that waits for each tick.
             statistics: Statistics of the whole run.
             energy: Whether to account for energy, in a run that is locked.
-            on_begin: Called with each diagram before it runs.
-            on_tick: Called after every tick with the diagram's context.
+            on_begin: Function that is called with each diagram before it runs.
+            on_tick: Function that is called after every tick with the diagram's
+                context.
 
         Returns:
             The diagram that ran last.
@@ -207,8 +208,9 @@ class CockpitRun:
     ) -> tuple[HapticDiagram, Context]:
         """Returns the next diagram, and the context from which it starts.
 
-        The last context is that at the end of the segment; None if it failed and
-        restarts.
+        Args:
+            change: The change that ended the segment.
+            last: Context at its end; None if it failed and restarts.
         """
         old, holder = self._haptic, self._holder
         backend = holder.backend
@@ -245,7 +247,9 @@ class CockpitRun:
     def _build(self, old: HapticDiagram, X_WH: RigidTransform | None) -> HapticDiagram:
         """Returns the diagram of the present scene with its present holder.
 
-        The handle continues at X_WH; None if the scene begins.
+        Args:
+            old: The diagram that ran.
+            X_WH: Pose at which the handle continues; None if the scene begins.
         """
         with warnings.catch_warnings():
             # The page shows them.

@@ -76,6 +76,7 @@ class SoftStartDevice(DeviceBackend):
         max_torque_Nm: float,
         period_s: float,
     ):
+        """Begins without force."""
         self.device = device
         self.waits = True
         self._gentle_force_N = _GENTLE * max_force_N
@@ -193,6 +194,7 @@ class ForceOnRequest:
     """Shows the force of a waiting device on request."""
 
     def __init__(self, device: SoftStartDevice, wants_it_now: Callable[[], bool]):
+        """Starts before the first tick."""
         self._device = device
         self._wants_it_now = wants_it_now
         self._could_show = False
@@ -231,8 +233,11 @@ class HandleHolder:
     ):
         """Takes the device at an address, or the scene's simulated one.
 
-        The address is that of `open_device`, or None. The scene gives the placement of
-        its device, which can be simulated if it has a hand.
+        Args:
+            scene: Scene that gives the placement of its device.
+            meshcat: The Meshcat that the page shows.
+            address: Address for `open_device`; None for the simulated one.
+            has_hand: Whether the scene's device can be simulated.
 
         Raises:
             DeviceError, SceneError, TickLogError, OSError: See `open_device`.
@@ -296,6 +301,7 @@ class HandleHolder:
             self.backend.close()
 
     def _open(self, name: str, X_WH: RigidTransform | None) -> DeviceBackend | None:
+        """Returns the backend of a holder."""
         site = self.site
         X_BH = site.X_BH if X_WH is None else site.X_WB.InvertAndCompose(X_WH)
         if name == MOUSE:

@@ -63,6 +63,7 @@ class SceneChanges:
     """
 
     def __init__(self, scene: Scene):
+        """Begins with the scene of a file."""
         self.file = scene
         # Ranges are those of the file's values, so that changes do not move them.
         self._keys_of_file = _find_keys(scene)
@@ -221,6 +222,7 @@ class SceneChanges:
 
 
 def _find_keys(scene: Scene) -> dict[str, LiveKey]:
+    """Returns the values that can be set, by their keys."""
     return {item.key: item for item in (*live_keys(scene), *effect_keys(scene))}
 
 

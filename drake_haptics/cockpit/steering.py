@@ -41,6 +41,7 @@ class PagePicture:
     """
 
     def __init__(self, meshcat: Meshcat, views: frozenset[str]):
+        """Begins without a diagram."""
         self._meshcat = meshcat
         self.views = {view: view in views for view in PICTURE_VIEWS}
         self._is_felt = True
@@ -125,6 +126,7 @@ class Steering:
         picture: PagePicture,
         locked: str = "",
     ):
+        """Begins without a diagram."""
         self.changes = changes
         self.answered = 0
         self._end_s = math.inf
@@ -256,6 +258,7 @@ class Steering:
         return True
 
     def _fail(self, why: str) -> None:
+        """Keeps an error to send to the page."""
         self._error, self._is_error_told = why, False
 
     def _apply(self, root: Context, now_s: float) -> None:
@@ -270,6 +273,7 @@ class Steering:
             self._end(now_s + _REST_S)
 
     def _write(self, haptic: HapticDiagram, root: Context) -> None:
+        """Writes the present values."""
         put_live_values(haptic, root, self._glide.apply(self._running))
 
     def _make_glide(self) -> LiveValueRamp:

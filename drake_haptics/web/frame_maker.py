@@ -96,6 +96,7 @@ class FrameMaker:
     """Makes frames from packets."""
 
     def __init__(self, shed_stages: Sequence[str] = ()):
+        """Starts with no tick."""
         self._shed_stages = shed_stages
         self._trace = Trace()
         self._tick_s: deque[float] = deque(maxlen=_LATEST)

@@ -109,7 +109,8 @@ class PageLink:
     def tell(self, message: dict[str, Any]) -> None:
         """Sends a message reliably, now or with a later call.
 
-        It has one name; a newer message with that name replaces it.
+        Args:
+            message: Message with one name; a newer one with that name replaces it.
         """
         [name] = message
         self._lasting[name] = json.dumps(message).encode()
@@ -155,6 +156,7 @@ class PageLink:
         self._start()
 
     def _let_go(self) -> None:
+        """Closes the connections to a process that has ended."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         self._socket.close()
@@ -176,7 +178,9 @@ class PageLink:
         self._listener.close()
 
     def __enter__(self) -> PageLink:
+        """Returns the link."""
         return self
 
     def __exit__(self, *_: object) -> None:
+        """Closes it."""
         self.close()

@@ -30,6 +30,7 @@ class PageCamera:
     """
 
     def __init__(self, meshcat: Meshcat, X_WC: RigidTransform):
+        """Starts at a pose."""
         self._meshcat = meshcat
         self._set(X_WC)
 
@@ -57,7 +58,9 @@ class PageCamera:
 def look_from_the_front(p_WQ: np.ndarray, radius_m: float) -> RigidTransform:
     """Returns the pose X_WC of a camera that looks along y, with z up.
 
-    It looks at the middle Q of a workspace with a radius, m.
+    Args:
+        p_WQ: (3,) point at which it looks, m.
+        radius_m: Radius of the workspace about that point, m.
     """
     R_WC = RotationMatrix(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
     return RigidTransform(R_WC, p_WQ - np.array([0.0, _FIRST_DISTANCE * radius_m, 0.0]))
@@ -119,8 +122,9 @@ class LivePage:
     ) -> list[dict[str, Any]]:
         """Performs one of the due tasks, and returns the requests of pages.
 
-        The time is that of any monotonic clock, s; the state is described when a frame
-        is due.
+        Args:
+            now_s: Time of any monotonic clock, s.
+            describe: Function that returns the state, called when a frame is due.
         """
         due_s = self._due_s
         if now_s < due_s:
@@ -145,5 +149,6 @@ class LivePage:
         self.camera.close()
 
     def _show(self, now_s: float, outlook: Outlook) -> None:
+        """Sends the recorded ticks."""
         self._link.flush()
         self._link.send(self._ticks.take(outlook, now_s, self.camera.numbers))

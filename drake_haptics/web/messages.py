@@ -65,14 +65,19 @@ class Tick:
 
 @dataclass(frozen=True)
 class Telemetry:
-    """A packet: an `Outlook` by names, the camera, and the ticks since the last packet.
+    """A packet.
 
     Attributes:
-        gate: One of `GATES`.
-        fault: One of `FAULTS`.
+        gate: State of the gate, one of `GATES`.
+        fault: Fault of the device, one of `FAULTS`.
+        silent_s: Time for which the device's driver has sent nothing new, s.
+        shed: Number of stages of work that were dropped.
+        skipped: Number of ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
         R_WC: (9,) axes of the camera x right, y down, z away, row by row.
         p_WC: (3,) position of the camera, m.
+        p_WH: (3,) position of the handle, m.
+        ticks: Ticks since the last packet.
     """
 
     gate: str
@@ -161,6 +166,7 @@ def read_telemetry(packet: bytes) -> Telemetry:
 
 
 def _read_tick(row: tuple[float, ...]) -> Tick:
+    """Returns the content of a row."""
     time_s, tick_s, query_s, contacts, clusters, distance_m, *wrench, _, late_s = row
     tau_x, tau_y, tau_z, f_x, f_y, f_z = wrench
     return Tick(

@@ -21,9 +21,11 @@ from drake_haptics.web.server import PageServer
 
 
 def write_changes(changes: dict[str, Any], indent: str = "") -> str:
-    """Returns YAML that replaces the same keys in the scene's file, indented.
+    """Returns YAML that replaces the same keys in the scene's file.
 
-    Changes are sections of a scene with keys and values, as in `SceneChanges`.
+    Args:
+        changes: Sections of a scene with keys and values, as in `SceneChanges`.
+        indent: Indent of each line.
     """
     lines = []
     for key, value in changes.items():
@@ -45,6 +47,7 @@ class PageProcess:
     """Converts the loop's packets to messages for pages, and forwards requests."""
 
     def __init__(self, listener: socket.socket, link: socket.socket, origin: str):
+        """Begins with no page."""
         self._link = link
         self._server = PageServer(listener, origin, self._forward)
         self._frames = FrameMaker()

@@ -102,7 +102,7 @@ def test_gains_of_which_none_has_a_stable_value_get_no_number(sample):
         words = describe_verdict(replace(sample, limits=limits))
         assert "none is stable" not in words and "margin" not in words
         assert (
-            "but not against a rigid wall. There no stiffness of translation is stable"
+            "but not against a rigid wall. No stiffness of translation is stable there"
             " with the coupling's other gains." in words
         )
 
