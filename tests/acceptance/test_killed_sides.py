@@ -1,14 +1,9 @@
-"""One of two processes is killed in contact: what is said, and what is felt next.
-
-Where the machine stalls for longer than a command lives, the device goes to fault, as
-it must: who waits for force presses Enter then.
-"""
+"""One of two processes is killed in contact: what is said, and what is felt next."""
 
 import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -49,45 +44,25 @@ def driver(tmp_path):
         yield driver
 
 
-def is_not_active(state):
-    """Tells whether the device is at fault or idle."""
-    return state.gate != ACTIVE
-
-
-def enter_until(host, link, wanted, needs_enter=is_not_active, bound_s=120.0):
-    """Presses Enter where all new states need it; returns the first state as wanted."""
-    end_s, seen, pressed_s = time.monotonic() + bound_s, len(link.states), 0.0
-    while time.monotonic() < end_s:
-        assert host.is_running
-        time.sleep(0.05)
-        new = link.states[seen:]
-        seen += len(new)
-        if found := next((state for state in new if wanted(state)), None):
-            return found
-        # A busy machine may not have acted on the last one yet.
-        if new and all(map(needs_enter, new)) and time.monotonic() > pressed_s + 5.0:
-            host.press_enter()
-            pressed_s = time.monotonic()
-    raise AssertionError(f"not reached; the last state was {link.states[-1:]}")
-
-
 def test_a_host_that_was_killed_in_contact_begins_gently(tmp_path, scene, driver):
     file = tmp_path / "host.json"
     with WatchedLink(driver.port) as link:
         with hosting(link.port, file, scene=scene) as host:
             # After a fault in contact, a second Enter skips the wait for a low force.
-            enter_until(host, link, lambda s: s.force_N > 5.0, lambda s: not s.force_N)
+            host.press_enter_until(
+                link, lambda s: s.force_N > 5.0, lambda s: not s.force_N
+            )
             host.send_signal(signal.SIGKILL)
             link.wait_for(lambda s: s.gate != ACTIVE and s.force_N == 0.0)
         seen = len(link.states)
         with hosting(link.port, file, scene=scene) as host:
-            first = enter_until(host, link, lambda s: s.gate == ACTIVE)
+            first = host.press_enter_until(link, lambda s: s.gate == ACTIVE)
             assert first.X_BH[6] == pytest.approx(LOW_M)
             # Long enough for the force to rise to its limit several times.
             later = first.sequence + 1000
-            enter_until(host, link, lambda s: s.sequence > later)
+            host.press_enter_until(link, lambda s: s.sequence > later)
             driver.send_signal(signal.SIGUSR1)
-            felt = enter_until(host, link, lambda s: s.force_N > 1.0)
+            felt = host.press_enter_until(link, lambda s: s.force_N > 1.0)
             assert felt.X_BH[6] == pytest.approx(GENTLE_M)
             host.end()
         link.check_limits()

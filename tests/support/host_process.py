@@ -5,9 +5,18 @@ import os
 import pty
 import signal
 import subprocess
+import time
 from contextlib import contextmanager
 
 from driver_process import COMMAND
+from struct_host import ACTIVE, IDLE
+
+PATIENCE_S = 5.0  # within which a busy machine may not have acted on a key
+
+
+def is_not_active(state):
+    """Tells whether the device is at fault or idle."""
+    return state.gate != ACTIVE
 
 
 class HostProcess:
@@ -37,6 +46,38 @@ class HostProcess:
     def press_enter(self):
         """Presses Enter."""
         os.write(self._keyboard, b"\n")
+
+    def press_enter_until(self, link, wanted, needs_enter=is_not_active, bound_s=180.0):
+        """Takes the device up wherever it needs it; returns the first state as wanted.
+
+        A machine that stalls for longer than a command lives leaves the device at
+        fault, as it must. Before the device has left idle once, nothing is pressed: the
+        run takes it up by itself.
+
+        Args:
+            link: Watched way to the device.
+            wanted: Tells whether a state is as wanted.
+            needs_enter: Tells whether Enter is needed at a state.
+            bound_s: Longest time to wait, s.
+
+        Raises:
+            AssertionError: The run has ended, or the time is over.
+        """
+        end_s = time.monotonic() + bound_s
+        seen, pressed_s, was_taken_up = len(link.states), -PATIENCE_S, False
+        while time.monotonic() < end_s:
+            time.sleep(0.05)
+            new = link.states[seen:]
+            seen += len(new)
+            if found := next((state for state in new if wanted(state)), None):
+                return found
+            assert self.is_running, self.wait()
+            was_taken_up = was_taken_up or any(state.gate != IDLE for state in new)
+            is_late = time.monotonic() > pressed_s + PATIENCE_S
+            if was_taken_up and new and all(map(needs_enter, new)) and is_late:
+                self.press_enter()
+                pressed_s = time.monotonic()
+        raise AssertionError(f"not reached; the last state was {link.states[-1:]}")
 
     def send_signal(self, number):
         """Sends the process a signal."""
