@@ -84,6 +84,8 @@ def _open_haply(
     from drake_haptics.device.haply.haply_device import HaplyDevice
 
     host, port = _split_host(parts, _HAPLY_PORT)
+    # The number of an IPv6 host has colons, which brackets keep from the port's.
+    host = f"[{host}]" if ":" in host else host
     return HaplyDevice.open(f"ws://{host}:{port}", parts.query)
 
 

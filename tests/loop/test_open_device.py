@@ -34,6 +34,12 @@ def test_a_port_must_be_one(scene, port):
         open_device(f"udp://127.0.0.1:{port}", scene)
 
 
+def test_the_number_of_an_ipv6_host_is_an_address_of_a_service_too(scene):
+    # Nothing listens at this port, so that the attempt is told with its address.
+    with pytest.raises(DeviceError, match=r"ws://\[::1\]:1: (?!.*valid URI)"):
+        open_device("haply://[::1]:1", scene)
+
+
 @pytest.mark.parametrize("end", ["/x", "?ttl_ms=5", "#a"])
 def test_nothing_follows_a_drivers_port(scene, end):
     with pytest.raises(DeviceError, match="nothing may follow the port"):

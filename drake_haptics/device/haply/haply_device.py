@@ -21,6 +21,7 @@ from drake_haptics.device.backend import (
     DeviceReading,
     LinkStatus,
 )
+from drake_haptics.device.driver import read_clock_ns
 from drake_haptics.device.gate import LocalGate
 from drake_haptics.device.haply.exchange import (
     ASK_FOR_DEVICES,
@@ -153,7 +154,7 @@ class HaplyDevice(DeviceBackend):
         return self._exchange.has_grip
 
     def read(self) -> DeviceReading | None:
-        """Returns the newest reading; its time is this computer's monotonic clock."""
+        """Returns the newest reading; its time is that of `read_clock_ns`, in s."""
         return self._exchange.reading
 
     def write(self, command: DeviceCommand) -> None:
@@ -222,7 +223,7 @@ class HaplyDevice(DeviceBackend):
                 self._connection = f"{self._uri} says nothing"
                 self._exchange.fall_silent()
                 continue
-            answer = self._exchange.answer(text, self._command, time.monotonic_ns())
+            answer = self._exchange.answer(text, self._command, read_clock_ns())
             socket.send(answer)
             if answer == ASK_FOR_DEVICES:
                 self._connection = f"{self._uri}: {self._exchange.complaint}"

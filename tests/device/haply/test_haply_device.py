@@ -14,6 +14,8 @@ from drake_haptics.device.backend import (
     Fault,
     GateState,
 )
+from drake_haptics.device.driver import read_clock_ns
+from drake_haptics.device.haply import haply_device
 from drake_haptics.device.haply.haply_device import HaplyDevice
 from drake_haptics.loop.open_device import open_device as open_device_at
 from drake_haptics.scene.library import find_scene
@@ -136,6 +138,18 @@ def test_a_service_that_went_is_felt_again_only_when_it_is_wanted(how):
         assert service.violations == 0
 
 
+def test_what_was_commanded_before_the_machine_slept_is_not_shown_after_it(monkeypatch):
+    slept_ns = 0
+    monkeypatch.setattr(
+        haply_device, "read_clock_ns", lambda: read_clock_ns() + slept_ns
+    )
+    with make_service() as service, open_device(service) as device:
+        wait_until(lambda: is_in(device, GateState.ACTIVE), lambda: press(device))
+        slept_ns = 3_600_000_000_000
+        wait_until(lambda: is_in(device, GateState.FAULT, Fault.DEVICE))
+        assert not device.read().F_Ho_B.any()
+
+
 def test_damaged_messages_are_counted_and_survived():
     with make_service() as service:
         with open_device(service) as device:
@@ -235,7 +249,7 @@ def test_no_service():
 def test_a_service_without_the_device(devices, says):
     with HaplyService(devices) as service:
         with pytest.raises(DeviceError, match=says):
-            HaplyDevice(service.uri, device_id="04EA", timeout_s=0.5)
+            HaplyDevice(service.uri, device_id="04EA", timeout_s=2.0)
         assert service.others
         assert not any(device.forces for device in devices.values())
 
