@@ -116,7 +116,7 @@ class Steering:
 
     Attributes:
         changes: The changes of the scene.
-        answered: Number of the last switch that was executed or refused.
+        answered: Number of the last request with one that was executed or refused.
     """
 
     def __init__(

@@ -190,6 +190,9 @@ _LONGEST_NAME = 64
 TAKE = "take"
 """Request to become the page that drives, which any page may send."""
 
+SEEN = "seen"
+"""Report of the last frame that a page has shown, which any page may send."""
+
 REFUSED = "refused"
 """The loop gets {REFUSED: 1} for a message that is not allowed."""
 
@@ -227,9 +230,10 @@ _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
     "turn": {"by": _are_steps},
     "home": {},
     TAKE: {},
-    "set": {"key": _is_name, "to": _is_number},
+    SEEN: {"number": _is_number},
+    # The state that answers a request has its number.
+    "set": {"key": _is_name, "to": _is_number, "number?": _is_number},
     "choose": {"key": _is_name, "to": _is_name},
-    # The state that answers a switch has its number.
     "effect": {"name": _is_name, "on": _is_switch, "number?": _is_number},
     "handle": {"to": _is_name},
     # Recovers a device from a fault, or lets a waiting one show its force.

@@ -16,7 +16,7 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from drake_haptics.web.messages import REFUSED, TAKE, read_page_request
+from drake_haptics.web.messages import REFUSED, SEEN, TAKE, read_page_request
 
 _TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -52,10 +52,38 @@ _LONGEST_MESSAGE = 256
 _CLOSE_S = 0.5
 # A page that reads too slowly misses frames.
 _MOST_UNREAD_BYTES = 1 << 16
+# So does one that says which frames it has shown, and lags by more: between server and
+# page there is room for minutes of frames.
+_MOST_UNSEEN = 2
+# Number of samples of a trace that are kept for a page: those of the ten seconds that
+# it shows.
+_LONGEST_TRACE = 2500
 
 # Errors of foreign connections must not appear on the terminal.
 _logger = logging.getLogger(f"{__name__}.websockets")
 _logger.setLevel(logging.CRITICAL)
+
+
+class _Unsent:
+    """The traces of the frames that a page has missed, and the one to send next."""
+
+    def __init__(self) -> None:
+        self._force_N: list[float] = []
+        self._torque_Nm: list[float] = []
+
+    def add(self, frame: dict[str, Any]) -> None:
+        """Adds the trace of a frame, if it has one."""
+        trace = frame.get("trace", {})
+        for kept, name in ((self._force_N, "force_N"), (self._torque_Nm, "torque_Nm")):
+            kept.extend(trace.get(name, ()))
+            del kept[:-_LONGEST_TRACE]
+
+    def put_into(self, frame: dict[str, Any]) -> dict[str, Any]:
+        """Returns a frame with these traces."""
+        if "trace" not in frame:
+            return frame
+        kept = {"force_N": self._force_N, "torque_Nm": self._torque_Nm}
+        return {**frame, "trace": {**frame["trace"], **kept}}
 
 
 class PageServer:
@@ -90,6 +118,11 @@ class PageServer:
         self._forward = forward
         # Pages; the last one drives.
         self._pages: list[ServerConnection] = []
+        # Number of the last frame; and by page, the numbers of those that it has yet to
+        # show, if it says so, and the traces of those that it was not sent.
+        self._number = 0
+        self._unseen: dict[ServerConnection, list[int]] = {}
+        self._unsent: dict[ServerConnection, _Unsent] = {}
         # The first messages to a new page, by name.
         self._lasting: dict[str, str] = {}
 
@@ -118,16 +151,28 @@ class PageServer:
         broadcast(self._pages, message)
 
     def show(self, frame: dict[str, Any]) -> None:
-        """Sends a frame to every page that keeps up."""
-        for drives in (True, False):
-            pages = [
-                page
-                for page in self._pages
-                if (page is self._pages[-1]) is drives
-                and page.transport.get_write_buffer_size() < _MOST_UNREAD_BYTES
-            ]
-            if pages:
-                broadcast(pages, json.dumps({"frame": {**frame, "drives": drives}}))
+        """Sends a frame, with a number, to every page that keeps up.
+
+        Other pages get its trace with their next frame.
+        """
+        self._number += 1
+        for page in reversed(self._pages):
+            unsent = self._unsent.setdefault(page, _Unsent())
+            unsent.add(frame)
+            if not self._keeps_up(page):
+                continue
+            own = {"drives": page is self._pages[-1], "number": self._number}
+            broadcast([page], json.dumps({"frame": unsent.put_into(frame) | own}))
+            del self._unsent[page]
+            if page in self._unseen:
+                self._unseen[page].append(self._number)
+
+    def _keeps_up(self, page: ServerConnection) -> bool:
+        """Returns whether a page has room for another frame."""
+        return (
+            len(self._unseen.get(page, ())) < _MOST_UNSEEN
+            and page.transport.get_write_buffer_size() < _MOST_UNREAD_BYTES
+        )
 
     async def _talk(self, page: ServerConnection) -> None:
         """Reads messages of a page until it closes."""
@@ -143,10 +188,16 @@ class PageServer:
             pass
         finally:
             self._pages.remove(page)
+            self._unseen.pop(page, None)
+            self._unsent.pop(page, None)
 
     async def _hear(self, page: ServerConnection, text: str | bytes) -> bool:
         """Forwards a page's request if it is allowed; returns whether it is."""
         asked = read_page_request(text)
+        if asked is not None and asked["do"] == SEEN:
+            unseen = self._unseen.get(page, [])
+            self._unseen[page] = [n for n in unseen if n > asked["number"]]
+            return True
         if asked is not None and asked["do"] == TAKE:
             self._pages.remove(page)
             self._pages.append(page)

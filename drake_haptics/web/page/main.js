@@ -89,7 +89,7 @@ const on = {
   },
 
   state(state) {
-    showValues(state.values ?? {});
+    showValues(state);
     tolerance_m = state.values?.["contact.tolerance_m"] ?? Infinity;
     showSwitches(state);
     placeWarnings(state.warnings ?? []);

@@ -2,7 +2,7 @@
 
 import {copy, find} from "./find.js";
 import {rounded} from "./format.js";
-import {say} from "./link.js";
+import {ask, isBefore} from "./link.js";
 import {warn} from "./warning.js";
 
 const STEPS = 1000;
@@ -32,8 +32,8 @@ function placeBelowSwitch(element, effect) {
   above.after(element);
 }
 
-export function showValues(values) {
-  for (const [key, value] of Object.entries(values)) rows.get(key)?.show(value);
+export function showValues({values = {}, answered}) {
+  for (const [key, value] of Object.entries(values)) rows.get(key)?.show(value, answered);
 }
 
 /** A refusal has been read when something else is asked for. */
@@ -78,6 +78,7 @@ class Slider {
     // The thumb's middle goes from 8 px to 8 px before the end.
     part(".mark").style.left = `calc(8px + ${this._share(key.file)} * (100% - 16px))`;
     this.isAsked = false;
+    this.asked = 0;
     this.range.addEventListener("input", () => this._ask(rounded(this._value(this.range.value / STEPS))));
     this.number.addEventListener("change", () => this._take());
     this.number.addEventListener("input", () => this.refuse(""));
@@ -86,9 +87,11 @@ class Slider {
     this.undo.addEventListener("click", () => this._reset());
   }
 
-  show(value) {
-    // What a hand is on stays as it is: the answer to an older wish is on its way.
-    if (this.isAsked) return;
+  show(value, answered) {
+    // What a hand is on stays as it is: the answer to an older wish is on its way. A page that no longer drives is
+    // not answered.
+    if (this.isAsked || (!this.number.matches(":disabled") && isBefore(answered, this.asked))) return;
+    this.element.classList.remove("waiting");
     this._write(value);
   }
 
@@ -110,9 +113,10 @@ class Slider {
     this._write(this.wanted);
     if (this.isAsked) return;
     this.isAsked = true;
+    this.element.classList.add("waiting");
     requestAnimationFrame(() => {
       this.isAsked = false;
-      say({do: "set", key: this.key.key, to: this.wanted});
+      this.asked = ask({do: "set", key: this.key.key, to: this.wanted});
     });
   }
 

@@ -1,13 +1,11 @@
 // What is on or off, one of several, or held by somebody.
 
 import {copy, find} from "./find.js";
-import {say} from "./link.js";
+import {ask, isBefore, say} from "./link.js";
 
 const choices = new Map();
 const switches = {effect: new Map(), view: new Map()};
 const handles = new Map();
-// Requests of switches are numbered, so that a state from before one does not undo it.
-let asked = 0;
 
 export function makeChoices(list) {
   find("contact").querySelectorAll(".choice").forEach(row => row.remove());
@@ -40,8 +38,7 @@ export function makeSwitches(kind, list) {
     }
     input.addEventListener("change", () => {
       row.classList.add("waiting");
-      row.dataset.asked = ++asked;
-      say({do: kind, name, on: input.checked, number: asked});
+      row.dataset.asked = ask({do: kind, name, on: input.checked});
     });
     made.set(name, {input, file});
     folder.append(row);
@@ -72,7 +69,8 @@ export function showSwitches(state) {
     for (const [name, {input, file}] of switches[kind]) {
       const row = input.parentElement;
       // A page that no longer drives is not answered.
-      if (row.classList.contains("waiting") && !input.disabled && row.dataset.asked > state.answered) continue;
+      if (row.classList.contains("waiting") && !input.matches(":disabled")
+        && isBefore(state.answered, Number(row.dataset.asked))) continue;
       input.checked = Boolean(values[name]);
       row.classList.remove("waiting");
       // Views are no matter of a scene file.
