@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from headless_browser import HeadlessBrowser
 from pydrake.geometry import Rgba
+from pydrake.math import RigidTransform
 from visualizer_rig import MAX_TORQUE_NM, X_WH, make_context, make_mesh, make_visualizer
 
 from drake_haptics.systems.output.meshcat_shapes import ArrowPool
@@ -42,10 +43,12 @@ def test_arrows_keep_their_size_however_they_move(chromium, early):
             browser.wait_for("typeof viewer != 'undefined'")
         draw(0.4)
         draw(0.5)
-        browser.wait_for(
-            "Math.abs(viewer.scene_tree.find(['arrows', '0']).object.position.x - 0.5)"
-            " < 1e-6"
-        )
+        # What comes last on the wire is there when all is.
+        meshcat.SetTransform("/end", RigidTransform([1.0, 0, 0]))
+        browser.wait_for("viewer.scene_tree.find(['end']).object.position.x == 1")
+        assert browser.evaluate(
+            "viewer.scene_tree.find(['arrows', '0']).object.position.x"
+        ) == pytest.approx(0.5, abs=1e-6)
         assert browser.evaluate(SCALE) == pytest.approx(LENGTH_M, rel=1e-6)
         assert browser.errors == []
 

@@ -20,11 +20,14 @@ X_WH = RigidTransform([0.02, 0.01, 0.05])
 F_W = np.array([0.0, 0.06, 0.08, 1.0, -2.0, 2.0])
 CAMERA_M = np.array([0.3, -0.45, 0.3])
 SHIFT = 8
-# Counts what the page says.
+# Counts what the page asks for.
 COUNT = """
   window.sent = 0;
   const send = WebSocket.prototype.send;
-  WebSocket.prototype.send = function(text) { sent += 1; send.call(this, text); };
+  WebSocket.prototype.send = function(text) {
+    sent += JSON.parse(text).do != "seen";
+    send.call(this, text);
+  };
 """
 # Where the picture is in the window, px: it is larger, so that its middle is free.
 PICTURE = """(({left, top, width, height}) => [left, top, width, height])(
@@ -59,15 +62,30 @@ class Hand:
             self.read()
             time.sleep(0.005)
 
+    def wait_for_pictures(self, count):
+        """Waits until the page has drawn so many more."""
+        self.browser.evaluate(
+            f"window.left = {count};"
+            " (draw => requestAnimationFrame(draw))("
+            "function draw() { left -= 1; if (left > 0) requestAnimationFrame(draw); })"
+        )
+        self.wait_for(lambda: self.browser.evaluate("left") <= 0)
+
+    def wait_for_still_camera(self):
+        """Goes on until the loop has the camera of pictures that no longer change."""
+        seen = [None]
+
+        def stands_still():
+            seen.append(self.meshcat.GetTrackedCameraPose())
+            self.wait_for_pictures(5)
+            return seen[-2] is not None and seen[-1].IsExactlyEqualTo(seen[-2])
+
+        self.wait_for(stands_still)
+
     def rest(self):
         """Goes on until the handle has done all that was asked; returns X_WH."""
         # The page sends what was asked with its next frame.
-        self.browser.call(
-            "Runtime.evaluate",
-            expression="new Promise(done => requestAnimationFrame("
-            "() => requestAnimationFrame(done)))",
-            awaitPromise=True,
-        )
+        self.wait_for_pictures(2)
         sent = self.browser.evaluate("sent")
         self.wait_for(lambda: self.device.get_link_status().received == sent)
         # It sets off with the reading that takes the goal, and is under way soon after.
@@ -174,8 +192,9 @@ def test_the_ring_marks_the_handle_in_meshcats_own_picture(hand):
     hand.drag((400, 250), (300, 220))
     X = hand.rest()
     hand.wait_for(lambda: np.abs(hand.ring() - hand.find(X)).max() < 0.1)
-    hand.meshcat.SetObject("/ball", Sphere(0.012), ball)
+    # Else it might be seen where it is before it has a place.
     hand.meshcat.SetTransform("/ball", X)
+    hand.meshcat.SetObject("/ball", Sphere(0.012), ball)
     try:
         hand.wait_for(lambda: magenta(hand.browser.screenshot()).any())
         rows, columns = np.nonzero(magenta(hand.browser.screenshot()))
@@ -266,6 +285,7 @@ def test_the_pointer_can_be_handed_to_the_camera_and_back(hand):
     hand.wait_for(
         lambda: not hand.meshcat.GetTrackedCameraPose().IsNearlyEqualTo(before, 1e-2)
     )
+    hand.wait_for_still_camera()
     assert hand.rest().IsNearlyEqualTo(X_WH, 1e-6)
     # The key is heard though the pointer was last in Meshcat's own page.
     hand.press("c")
@@ -304,6 +324,8 @@ def test_the_dial_has_the_force_as_the_picture_has_it(hand):
 
 
 def test_nothing_is_amiss_on_the_page(hand):
+    """Also while nothing is heard of the loop, as here."""
+    hand.browser.wait_for("document.getElementById('notice-quiet') != null")
     assert hand.browser.errors == []
     # There is nothing to be changed, and no figure that nobody knows.
     assert hand.browser.evaluate(

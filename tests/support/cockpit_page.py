@@ -103,25 +103,32 @@ class Page:
         """Time of the run, s."""
         return parse_seconds(self.read("time"))
 
-    def force_W(self):
-        """Force on the hand (3,), N, as the table has it."""
-        cells = self.evaluate(
-            "[...document.querySelectorAll('#components tbody tr')]"
-            ".map(row => row.cells[1].textContent)"
+    def feel(self):
+        """Time of the run, s, and force on the hand (3,), N, of one frame."""
+        time, *cells = self.evaluate(
+            "[document.getElementById('time'),"
+            " ...document.querySelectorAll('#components tbody tr td:nth-child(2)')]"
+            ".map(part => part.textContent)"
         )
-        return np.array([float(cell.replace("−", "-")) for cell in cells])
+        force_W = np.array([float(cell.replace("−", "-")) for cell in cells])
+        return parse_seconds(time), force_W
+
+    def wait_for_answer(self):
+        """Waits until the run has answered what sliders and switches asked for."""
+        self.wait_for("!document.querySelector('.slider.waiting, .switch.waiting')")
 
     def wait_for_rest(self):
         """Waits until the force rests for half a second of the run; returns it.
 
-        A change that was asked for just before has begun by then, and ended: it takes
-        a fifth of a second, however slow the run is.
+        A change that was asked for just before has begun by then, and ended: once the
+        run has answered, it takes a fifth of a second, however slow the run is.
         """
+        self.wait_for_answer()
         before, since_s = None, 0.0
         deadline = time.monotonic() + 180.0
         while True:
             assert time.monotonic() < deadline, "the force never came to rest"
-            now_s, force = self.time_s(), self.force_W()
+            now_s, force = self.feel()
             # Rounding to hundredths may flicker.
             if before is None or np.abs(force - before).max() > 0.015:
                 before, since_s = force, now_s

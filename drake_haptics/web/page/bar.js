@@ -25,8 +25,8 @@ export function showQuiet(for_s) {
   find("gate").ariaLive = "off";
   find("gate").title = "The loop stands still, or its process does.";
   write(find("gate"), "no news for " + silence(for_s));
-  show("rate", 0, () => "0 Hz · 0.00×");
-  show("late", 0, () => "–");
+  write(find("rate"), "0 Hz · 0.00×");
+  write(find("late"), "–");
 }
 
 export function showFigures(frame, period_s) {

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from cockpit_page import TOLERANCE_M, parse_seconds
+from cockpit_page import TOLERANCE_M, TRACE, parse_seconds
 
 
 def test_thousands_of_frames_leave_no_more_behind(page):
@@ -63,10 +63,13 @@ def test_a_loop_that_stands_still_is_told_of_until_it_goes_on(run, page):
     """As after Ctrl-Z, in a debugger, or on a machine that swaps."""
     read_what_traces_write(page)
     gate, figure = "document.getElementById('gate')", "document.getElementById('{}')"
+    # On a busy machine the page may not see each second.
+    silent_s = f"{gate}.textContent.match(/^no news for ([0-9]+) s/)?.[1]"
     page.wait_for("written.some(([text]) => text == 'now')")
-    chip = page.evaluate(f"{gate}.className")
+    chip = "chip simulated"
+    page.wait_for(f"{gate}.className == '{chip}'")
     with stopped(run):
-        page.wait_for(f"{gate}.textContent.startsWith('no news for 3')")
+        page.wait_for(f"{silent_s} >= 3")
         assert page.read("rate") == "0 Hz · 0.00×" and page.read("late") == "–"
         assert page.evaluate(f"{gate}.className") == "chip"
         assert "stands still" in page.read("notice-quiet")
@@ -74,14 +77,17 @@ def test_a_loop_that_stands_still_is_told_of_until_it_goes_on(run, page):
         page.wait_for("written.some(([text]) => text.endsWith(' s ago'))")
         assert not page.evaluate("written.some(([text]) => text == 'now')")
         time_s = page.read("time")
-        page.wait_for(f"{gate}.textContent.startsWith('no news for 5')")
+        since_s = page.evaluate(silent_s)
+        page.wait_for(f"{silent_s} >= {since_s} + 2")
         assert page.read("time") == time_s
     page.wait_for(f"{gate}.className == '{chip}'")
     page.wait_for("document.getElementById('notice-quiet') == null")
     page.evaluate("written = []")
     page.wait_for("written.some(([text]) => text == 'now')")
-    page.wait_for(f"parseFloat({figure.format('rate')}.textContent) > 10")
-    assert page.read("late") != "–"
+    page.wait_for(
+        f"parseFloat({figure.format('rate')}.textContent) > 10"
+        f" && {figure.format('late')}.textContent != '–'"
+    )
     page.wait_for(f"document.getElementById('time').textContent != '{time_s}'")
 
 
@@ -181,8 +187,9 @@ def test_another_run_at_the_same_port_brings_its_own_picture(page):
 def test_the_end_is_told_and_what_was_felt_stays(run, page):
     assert page.browser.errors == []
     page.wait_for_rest()
+    # It is drawn with the next picture.
+    page.wait_for(f"{TRACE} > 5")
     felt = page.trace()
-    assert felt > 5
     run.interrupt()
     page.wait_for("document.getElementById('notice-over') != null")
     said = page.read("notice-over")

@@ -219,7 +219,9 @@ def drag_aside(page):
 
 def test_a_page_that_comes_later_drives_and_this_one_can_take_over(run, page):
     other = websocket.create_connection(run.url.replace("http", "ws"), timeout=120)
-    page.wait_for("document.getElementById('notice-watching') != null")
+    # Who reads nothing for long is taken to be gone.
+    watching = "document.getElementById('notice-watching') != null"
+    wait_until(lambda: page.evaluate(watching), other.recv)
     assert page.evaluate("document.getElementById('coupling').disabled")
     page.click("#notice-watching button")
     page.wait_for("document.getElementById('notice-watching') == null")

@@ -97,6 +97,31 @@ def test_a_double_click_goes_back_to_the_scene_file(page):
     assert f_W[2] == pytest.approx(calc_pressed_force(K_COUPLING), abs=TOLERANCE_N)
 
 
+def test_a_state_from_before_a_wish_does_not_undo_it(page):
+    """Else a slider would jump back and forth under the hand that drags it."""
+    state = {"state": {"values": {STIFFNESS: K_COUPLING}, "answered": 0}}
+    number = f"document.getElementById('{STIFFNESS}')"
+    # The wish is sent with the next picture, and cannot be answered in that.
+    page.evaluate(
+        f"""(slider => {{
+          slider.value = 900;
+          slider.dispatchEvent(new Event('input'));
+          window.wish = {number}.value;
+          requestAnimationFrame(() => {{
+            ways.at(-1).onmessage({{data: {json.dumps(json.dumps(state))}}});
+            window.kept = {number}.value;
+          }});
+        }})({SLIDER}.querySelector('input[type=range]'))"""
+    )
+    page.wait_for("window.kept")
+    wish, kept = page.evaluate("[wish, kept].map(Number)")
+    assert kept == wish > 2 * K_COUPLING
+    page.wait_for_answer()
+    assert page.evaluate(f"{number}.value") == page.evaluate("wish")
+    page.click("#reset")
+    page.wait_for(f"{number}.value == {K_COUPLING}")
+
+
 def test_what_is_no_number_of_the_range_is_refused_and_changes_nothing(page):
     refusal = f"{SLIDER}.querySelector('.refusal')"
     for text, why in [
