@@ -17,6 +17,7 @@ from drake_haptics.systems.output.meshcat_shapes import (
     LONG_ARROW,
     ArrowPool,
     DrawnPieces,
+    MovingParts,
 )
 
 _ROOT = "/haptics"
@@ -72,6 +73,9 @@ class HapticPicture:
     `objects/<name>`.
 
     Most methods that draw return an iterator, so that a frame can be drawn in slices.
+
+    Attributes:
+        parts: The parts that move.
     """
 
     def __init__(
@@ -97,6 +101,7 @@ class HapticPicture:
             has_friction: Whether there is friction to draw.
         """
         self._meshcat = meshcat
+        self.parts = MovingParts(meshcat)
         # An earlier loop may have left its friction in this Meshcat.
         meshcat.Delete(f"{_ROOT}/friction")
         self._wanted = set(SHOWN_AT_FIRST)
@@ -128,18 +133,29 @@ class HapticPicture:
         # Too short to be seen until handle and tool move apart.
         meshcat.SetProperty(f"{_ROOT}/coupling/line", "scale", [1.0, 1.0, _NO_LENGTH_M])
         self._max_force_N, self._max_torque_Nm = max_force_N, max_torque_Nm
-        self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line], LONG_ARROW)
+        self._force = ArrowPool(
+            meshcat, f"{_ROOT}/force", 1, [line], LONG_ARROW, self.parts
+        )
         self._torque = ArrowPool(
-            meshcat, f"{_ROOT}/torque", 1, [Rgba(*colors.TORQUE)], DOUBLE_ARROW
+            meshcat,
+            f"{_ROOT}/torque",
+            1,
+            [Rgba(*colors.TORQUE)],
+            DOUBLE_ARROW,
+            self.parts,
         )
         pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
-        self._contacts = ArrowPool(meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair)
+        self._contacts = ArrowPool(
+            meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair, parts=self.parts
+        )
         self._clusters = ArrowPool(
-            meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair, LONG_ARROW
+            meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair, LONG_ARROW, self.parts
         )
         pair = [Rgba(*colors.STICKING_CONTACT), Rgba(*colors.SLIDING_CONTACT)]
         most = _MAX_CLUSTERS if has_friction else 0
-        self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair, LONG_ARROW)
+        self._friction = ArrowPool(
+            meshcat, f"{_ROOT}/friction", most, pair, LONG_ARROW, self.parts
+        )
 
     def show(self, view: str, visible: bool) -> None:
         """Requests that `draw_views` show or hide a view.
@@ -194,16 +210,16 @@ class HapticPicture:
 
     def place_object(self, name: str, X_WO: RigidTransform, time_s: float) -> None:
         """Places an object that moves."""
-        self._meshcat.SetTransform(f"{_ROOT}/objects/{name}", X_WO, time_s)
+        self.parts.place(f"{_ROOT}/objects/{name}", X_WO, time_s)
 
     def place_tool(
         self, X_WH: RigidTransform, X_WT: RigidTransform, time_s: float
     ) -> Iterator[None]:
         """Places the tool, its ghost in the handle, and the line that couples them."""
-        self._meshcat.SetTransform(f"{_ROOT}/tool", X_WT, time_s)
+        self.parts.place(f"{_ROOT}/tool", X_WT, time_s)
         yield
-        self._meshcat.SetTransform(f"{_ROOT}/handle", X_WH @ self._X_HT, time_s)
-        self._meshcat.SetTransform(f"{_ROOT}/grip", X_WH, time_s)
+        self.parts.place(f"{_ROOT}/handle", X_WH @ self._X_HT, time_s)
+        self.parts.place(f"{_ROOT}/grip", X_WH, time_s)
         yield
         p_WH = X_WH.translation()
         line = X_WT @ self._p_TH - p_WH
@@ -212,10 +228,10 @@ class HapticPicture:
             X_WLine = RigidTransform(
                 RotationMatrix.MakeFromOneVector(line, 2), p_WH + line / 2
             )
-            self._meshcat.SetTransform(f"{_ROOT}/coupling", X_WLine, time_s)
+            self.parts.place(f"{_ROOT}/coupling", X_WLine, time_s)
             # On a child of the node with the pose, for the reason in ArrowPool.
             path = f"{_ROOT}/coupling/line"
-            self._meshcat.SetProperty(path, "scale", [1.0, 1.0, length], time_s)
+            self.parts.scale(path, [1.0, 1.0, length], time_s)
 
     def draw_display_wrench(
         self, p_WH: np.ndarray, F_H_W: np.ndarray, time_s: float

@@ -179,14 +179,14 @@ class HapticVisualizer(DifferentiableSystem):
     def StartRecording(self) -> None:
         """Records every frame from now on into Meshcat's animation."""
         self._meshcat.StartRecording(frames_per_second=1 / self._period_s)
-        self._recording = True
+        self._recording = self._picture.parts.records = True
         self._first_frame = True
         self._recorded_sizes = []
 
     def StopRecording(self) -> None:
         """Stops recording; what was recorded stays."""
         self._meshcat.StopRecording()
-        self._recording = False
+        self._recording = self._picture.parts.records = False
 
     def PublishRecording(self) -> None:
         """Sends the animation to the browser and into `Meshcat.StaticHtml`."""

@@ -34,6 +34,42 @@ DOUBLE_ARROW: Profile = (
 _SHEET = 128
 
 
+# Parts of a pose, m and of unit vectors, that no picture shows.
+_STILL = 1e-6
+
+
+class MovingParts:
+    """Places and scales parts of a Meshcat's scene, but only those that have changed.
+
+    A page draws a picture whenever it is sent something, which without a graphics card
+    takes most of a processor. At rest there is nothing to draw.
+
+    Attributes:
+        records: Whether everything is sent, because a recording needs every frame.
+    """
+
+    def __init__(self, meshcat: Meshcat):
+        """Starts with nothing sent."""
+        self.records = False
+        self._meshcat = meshcat
+        self._poses: dict[str, RigidTransform] = {}
+        self._scales: dict[str, np.ndarray] = {}
+
+    def place(self, path: str, X: RigidTransform, time_s: float) -> None:
+        """Places a part in its parent."""
+        last = self._poses.get(path)
+        if self.records or last is None or not X.IsNearlyEqualTo(last, _STILL):
+            self._poses[path] = RigidTransform(X)
+            self._meshcat.SetTransform(path, X, time_s)
+
+    def scale(self, path: str, scale: list[float], time_s: float) -> None:
+        """Scales a part, to another scale than zero."""
+        last = self._scales.get(path)
+        if self.records or last is None or not np.allclose(last, scale, _STILL, 0.0):
+            self._scales[path] = np.array(scale)
+            self._meshcat.SetProperty(path, "scale", scale, time_s)
+
+
 class ArrowPool:
     """A fixed number of arrows, made once, then moved, scaled, shown and hidden.
 
@@ -53,6 +89,7 @@ class ArrowPool:
         capacity: int,
         colors: Sequence[Rgba],
         profile: Profile = SHORT_ARROW,
+        parts: MovingParts | None = None,
     ):
         """Sends the arrows to Meshcat, hidden.
 
@@ -62,8 +99,10 @@ class ArrowPool:
             capacity: Number of arrows that can be visible at once.
             colors: Colors that an arrow can have.
             profile: Outline of an arrow of length 1.
+            parts: Parts of the same Meshcat. Defaults to new ones.
         """
         self._meshcat = meshcat
+        self._parts = parts or MovingParts(meshcat)
         self._num_colors = len(colors)
         self._slots = [f"{path}/{i}" for i in range(capacity)]
         self._slot_of_key: dict[Hashable, int] = {}
@@ -106,7 +145,7 @@ class ArrowPool:
             X_WArrow = RigidTransform(
                 RotationMatrix.MakeFromOneVector(vector, 2), p - vector
             )
-            self._meshcat.SetTransform(self._slots[i], X_WArrow, time_s)
+            self._parts.place(self._slots[i], X_WArrow, time_s)
             yield
             length = float(np.linalg.norm(vector))
             if not math.isclose(length, self._lengths[i], rel_tol=1e-6):

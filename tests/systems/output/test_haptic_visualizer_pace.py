@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from visualizer_rig import (
     FakeMeshcat,
@@ -34,12 +35,48 @@ def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
 
     visualizer = make_visualizer(meshcat)
     meshcat.SetTransform = slow_transform
-    context = make_context(visualizer)
     while clock.now < 102.0:
-        visualizer.ForcedPublish(context)
+        X_WT = RigidTransform([clock.now, 0, 0])
+        visualizer.ForcedPublish(make_context(visualizer, X_WT=X_WT))
         clock.now += 1 / 32
     assert 0.010 * len(drawn) <= 0.05 * 2.0 + 0.010
     assert len(drawn) >= 8
+
+
+@pytest.mark.parametrize("recording", [False, True])
+def test_what_rests_is_sent_once_and_recorded_in_every_frame(monkeypatch, recording):
+    """A page draws whatever it is sent, which without a graphics card takes long."""
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    if recording:
+        visualizer.StartRecording()
+    sent = []
+
+    def call(path, *_):
+        sent.append(path)
+
+    meshcat.SetTransform = meshcat.SetProperty = call
+
+    def draw(p_WT):
+        clock.now += 1.0
+        sent.clear()
+        X_WT = RigidTransform(p_WT)
+        context = make_context(visualizer, [-1e-3], f_H_W=(0, 0, 1), X_WT=X_WT)
+        visualizer.ForcedPublish(context)
+        return set(sent)
+
+    first = draw([0, 0, 0.1])
+    parts = {"tool", "handle", "grip", "coupling", "force/0", "contacts/0"}
+    assert first > {f"/haptics/{part}" for part in parts}
+    again = draw([0, 0, 0.1 + 1e-8])
+    assert (again >= {f"/haptics/{part}" for part in parts}) == recording
+    assert recording or again == set()
+    # The tool and the line from the handle to it, which is longer, too.
+    moves = {"/haptics/tool", "/haptics/coupling", "/haptics/coupling/line"}
+    moved = draw([0, 0, 0.1001])
+    assert moved >= moves and (recording or moved == moves)
 
 
 def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
