@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +83,8 @@ class HeadlessBrowser:
 
     def open(self, address: str) -> None:
         """Opens a page and waits until it has loaded."""
-        self.call("Page.navigate", url=address)
+        answer = self.call("Page.navigate", url=address)
+        assert "errorText" not in answer, f"{address}: {answer['errorText']}"
         self.wait_for("document.readyState == 'complete'")
 
     def resize(self, width: int, height: int = 800, *, is_phone: bool = False) -> None:
@@ -173,18 +175,25 @@ class HeadlessBrowser:
         deadline = time.monotonic() + self._timeout_s
         port_file = Path(self._folder.name) / "DevToolsActivePort"
         while time.monotonic() < deadline:
-            if port_file.exists() and (lines := port_file.read_text().split()):
-                browser = websocket.create_connection(
-                    f"ws://127.0.0.1:{lines[0]}{lines[1]}", timeout=self._timeout_s
-                )
-                browser.send(json.dumps({"id": 0, "method": "Target.getTargets"}))
-                targets = json.loads(browser.recv())["result"]["targetInfos"]
-                browser.close()
-                pages = [t["targetId"] for t in targets if t["type"] == "page"]
-                if pages:
-                    return websocket.create_connection(
-                        f"ws://127.0.0.1:{lines[0]}/devtools/page/{pages[0]}",
-                        timeout=self._timeout_s,
-                    )
+            lines = port_file.read_text().split() if port_file.exists() else []
+            # It is written in two steps, and the port may be reset until all is up.
+            if len(lines) == 2:
+                with suppress(ConnectionError):
+                    if page := self._find_page(*lines):
+                        return page
             time.sleep(0.05)
         raise TimeoutError("the browser did not start")
+
+    def _find_page(self, port: str, path: str) -> websocket.WebSocket | None:
+        """Connects to the browser's page, if it has one yet."""
+        address, options = f"ws://127.0.0.1:{port}", {"timeout": self._timeout_s}
+        browser = websocket.create_connection(address + path, **options)
+        browser.send(json.dumps({"id": 0, "method": "Target.getTargets"}))
+        targets = json.loads(browser.recv())["result"]["targetInfos"]
+        browser.close()
+        pages = [t["targetId"] for t in targets if t["type"] == "page"]
+        if not pages:
+            return None
+        return websocket.create_connection(
+            f"{address}/devtools/page/{pages[0]}", **options
+        )

@@ -62,6 +62,8 @@ def look(page):
 
 def wait_for_still(page):
     """Waits until the picture, which follows the figures, stands still; returns it."""
+    # Before anything is drawn it stands still, too. The tool is orange.
+    wait_until(lambda: (look(page) @ [1, 0, -1] > 60).any())
     seen = [look(page)]
 
     def stands_still():
