@@ -31,11 +31,20 @@ def AppliedWrenches_(T: type) -> type:
     # The default is NaN for AutoDiffXd.
     p_BoBo_B = np.array([T(0.0)] * 3)
 
-    def make_force(body: BodyIndex, F_Bo_W: Any) -> Any:
-        """Returns a force on a body whose wrench (6,) is at its origin."""
+    def make_copier(body: BodyIndex) -> Callable[[], Any]:
+        """Returns a function that makes forces at a body's origin, not yet set.
+
+        A copy takes a quarter of the time of setting body and point again.
+        """
         force = AppliedForce()
         force.body_index = body
         force.p_BoBq_B = p_BoBo_B
+        copier: Callable[[], Any] = force.__copy__
+        return copier
+
+    def make_force(copier: Callable[[], Any], F_Bo_W: Any) -> Any:
+        """Returns a force on a body whose wrench (6,) is at its origin."""
+        force = copier()
         force.F_Bq_W = SpatialForce(F_Bo_W)
         return force
 
@@ -98,6 +107,7 @@ def AppliedWrenches_(T: type) -> type:
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self._bodies = [tool, *objects]
+            self._copiers = [make_copier(body) for body in self._bodies]
             self._names = (tuple(tool_wrenches), tuple(object_wrenches))
             self._eval_on_tool = [
                 self.DeclareVectorInputPort(f"F_To_W_{name}", 6).Eval
@@ -157,7 +167,7 @@ def AppliedWrenches_(T: type) -> type:
                     on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
                 ]
             # New objects each time, because threads may share the system.
-            forces.set_value(list(map(make_force, self._bodies, wrenches)))
+            forces.set_value(list(map(make_force, self._copiers, wrenches)))
 
     return Impl
 
