@@ -39,13 +39,16 @@ double ContactChain::least_distance() const {
   return least;
 }
 
-void ContactChain::Forget() { has_contacts_ = has_wrench_ = false; }
+void ContactChain::Forget() {
+  has_contacts_ = has_wrench_ = false;
+  X_WO_.clear();
+}
 
 const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
                                              double tolerance,
                                              ContactTracker* tracker) {
   if (!has_contacts_ || tolerance != tolerance_ || !IsSame(q_WT, q_WT_)) {
-    Forget();
+    has_contacts_ = has_wrench_ = false;
     tracker->Query(PoseFromVector(q_WT, "X_WT"), tolerance, &contacts_);
     q_WT_ = q_WT;
     tolerance_ = tolerance;
@@ -56,12 +59,11 @@ const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
 
 const std::vector<Contact>& ContactChain::Shade(const ContactTracker& tracker) {
   if (law().shading == nullptr) return contacts_.contacts;
-  std::vector<Pose> X_WO;
-  for (int i = 0; i < tracker.num_objects(); ++i) {
-    X_WO.push_back(tracker.object_pose(i));
+  for (int i = static_cast<int>(X_WO_.size()); i < tracker.num_objects(); ++i) {
+    X_WO_.push_back(tracker.object_pose(i));
   }
   shaded_ = contacts_;
-  law().shading->Shade<double>(PoseFromVector(q_WT_, "X_WT"), X_WO, &shaded_);
+  law().shading->Shade<double>(PoseFromVector(q_WT_, "X_WT"), X_WO_, &shaded_);
   return shaded_.contacts;
 }
 

@@ -90,6 +90,7 @@ class ContactChain {
   double tolerance_ = 0;
   ContactSet contacts_;
   ContactSet shaded_;
+  std::vector<Pose> X_WO_;   // of the tracker's objects; empty until needed
   bool has_wrench_ = false;  // for q_WT_ and V_WT_
   Vec6 V_WT_;
   ClusterSet clusters_;
