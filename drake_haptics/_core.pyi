@@ -1087,13 +1087,12 @@ class CouplingGains:
     def __repr__(self) -> str: ...
 
 @overload
-def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
+def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(39), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
     """
     Wrenches of the virtual coupling between handle H and tool, from one vector as a multiplexer joins it: each array that is passed takes as long as the law.
 
     Args:
-        joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`; poses [qw qx qy qz x y z], spatial velocities [rad/s; m/s].
-        q_HT: (7,) pose of the tool in the handle.
+        joined: (39,) [q_WH; V_WH; q_WT; V_WT; gains; q_HT], the gains (6) in the order of `CouplingGains`, q_HT the pose of the tool in the handle at rest; poses [qw qx qy qz x y z], spatial velocities [rad/s; m/s].
 
     Returns:
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
@@ -1103,8 +1102,8 @@ def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=
     """
 
 @overload
-def joined_coupling_wrench(joined: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> AutoDiffVector:
-    """The same with derivatives by all but the gains."""
+def joined_coupling_wrench(joined: AutoDiffVector) -> AutoDiffVector:
+    """The same with derivatives by all but the gains and q_HT."""
 
 def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], max_torque_Nm: float, max_force_N: float) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
     """
@@ -1115,6 +1114,14 @@ def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')
 
     Raises:
         ValueError: a limit is negative or not finite.
+    """
+
+def limit_coupling(joined: Annotated[NDArray[numpy.float64], dict(shape=(39), order='C')], max_torque_Nm: float, max_force_N: float) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+    """
+    The same for the reaction on the handle of `joined_coupling_wrench`.
+
+    Raises:
+        ValueError: a limit is negative or not finite, or a gain is out of range.
     """
 
 class RigidToolDynamics:
@@ -2539,12 +2546,12 @@ class ContactChain(SceneTracker):
         As `SceneTracker.query`, but for a pose vector (7,) equal to the last one the last results are returned.
         """
 
-    def step_tool(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], dynamics: RigidToolDynamics, h: float, others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+    def step_tool(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(39), order='C')], dynamics: RigidToolDynamics, h: float, others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
         """
         The tool's next state (13,): `RigidToolDynamics.step` under the coupling, the contacts and other wrench models, in this order.
 
         Args:
-            joined, q_HT: arguments of `joined_coupling_wrench`.
+            joined: argument of `joined_coupling_wrench`.
             dynamics: inertia of the tool.
             h: duration of the step, s.
             others: other wrench models (78,).
@@ -2558,9 +2565,9 @@ class ContactChain(SceneTracker):
         The wrench (6,) [torque; force] of the contacts on the tool at To, N·m and N, at its pose (7,) and spatial velocity (6,).
         """
 
-    def find_coupled_force(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def find_coupled_force(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(39), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
-        The sum of that wrench and the coupling's, for the arguments of `joined_coupling_wrench`.
+        The sum of that wrench and the coupling's, for the argument of `joined_coupling_wrench`.
         """
 
     def find_friction(self, friction: StickSlipModel, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> FrictionStep:
@@ -2593,7 +2600,7 @@ class ContactChain(SceneTracker):
         Numbers of contacts and of clusters, the least distance (m, infinite without contacts) and the time of the query (s), for the tool in a state (13,).
         """
 
-    def handle_slopes(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
+    def handle_slopes(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(39), order='C')], others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
         """
         `handle_slopes` (72,) of the coupling and of the contacts plus other wrench models, for the arguments of `step_tool`.
         """

@@ -174,7 +174,7 @@ def AddHapticLoop(
                     period_s,
                     names,
                     X_WT,
-                    chained_at=X_HT if is_chained else None,
+                    enable_chain=is_chained,
                 ),
             ),
             load_shedding,
@@ -230,6 +230,9 @@ def AddHapticLoop(
             builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
         )
     builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
+    if chain and systems.passivity is None:
+        joined = chain["motions_and_gains"]
+        builder.Connect(joined, device.GetInputPort("coupled_motions"))
     return loop
 
 
@@ -273,7 +276,7 @@ def _add_handle_model(
         "handle_model",
         HandleModel(
             [name for name in sources if name != "coupling"],
-            chained_at=base.virtual_coupling.X_HT if chain else None,
+            enable_chain=bool(chain),
         ),
     )
     connect_by_name(builder, model, chain)

@@ -68,9 +68,10 @@ class RenderingWiring:
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
         self._asked: OutputPort | None = None
+        # Motions of the coupling, if its wrench goes to the device as it is.
+        self._coupled: OutputPort | None = None
         # Inputs of `AppliedWrenches` from which it computes contact and coupling.
         self._chain: dict[str, OutputPort] = {}
-        self._chained_at: RigidTransform | None = None
         self._warn_of_depth: Callable[[Context, float, float], None] | None = None
         self.proxy_gains: _core.CouplingGains | None = None
         self._contact_stiffness: Sequence[float] = []
@@ -88,6 +89,8 @@ class RenderingWiring:
     def sources(self) -> dict[str, OutputPort]:
         """Output ports, by the names of the inputs that need them."""
         asked = {} if self._asked is None else {"F_Ho_W_desired": self._asked}
+        if self._coupled is not None:
+            asked["coupled_motions"] = self._coupled
         return {
             **self.outputs,
             **self._free,
@@ -235,10 +238,9 @@ class RenderingWiring:
         )
         if self._proxy is None:
             self._push_tool("coupling", coupling.GetOutputPort("wrench_model"))
+            self._coupled = coupling.GetOutputPort("motions_and_gains")
             if self._chain:
-                joined = coupling.GetOutputPort("motions_and_gains")
-                self._chain["motions_and_gains"] = joined
-                self._chained_at = X_HT
+                self._chain["motions_and_gains"] = self._coupled
         else:
             pull, proxy = coupling.GetOutputPort("wrench_model"), self._proxy
             body = self.builder.GetSubsystemByName("body_of_proxy")
@@ -303,6 +305,7 @@ class RenderingWiring:
                 wrenches = reaction.GetOutputPort("F_O_W")
                 self._on_objects["friction"] = wrenches
         if added.passivity is not None:
+            self._coupled = None
             self.outputs |= _name_outputs(added.passivity)
 
     def add_applied_wrenches(self) -> None:
@@ -314,7 +317,7 @@ class RenderingWiring:
                 list(self._on_tool),
                 list(self._moving.values()),
                 list(self._on_objects),
-                self._chained_at,
+                "motions_and_gains" in self._chain,
                 self._warn_of_depth,
             ),
         )

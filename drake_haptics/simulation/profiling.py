@@ -60,6 +60,9 @@ _CHAINED = (
 )
 CHAIN = "contact_chain"
 _CHAIN_WHY = "always: contacts, force and the tool's step, in one call"
+# With them the hold computes the coupling's wrench for the device.
+_COUPLED = ("rendered_force_hold", "virtual_coupling")
+_COUPLED_WHY = "always: couples tool and handle, limits what the device shows"
 # For a system that this package does not know.
 _NOT_OURS = "yours: it was added to the loop"
 REST = "Drake and the rest"
@@ -241,18 +244,21 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
 
     parts = []
     systems = _list_systems(haptic)
-    chained = _find_chained(haptic)
+    chained, coupled = _find_chained(haptic)
     for system in systems:
         name, kind = system.get_name(), type(system).__name__
-        if name in chained[1:]:
+        if name in [*chained[1:], *coupled[1:]]:
             continue
-        taken = [system]
         why = _WHY.get(name, _NOT_OURS)
+        together: tuple[str, ...] = (name,)
         if name in chained:
-            taken = [one for one in systems if one.get_name() in chained]
+            together = chained
             name, kind, why = CHAIN, "ContactChain", _CHAIN_WHY
             if haptic.loop.effects.shading is not None:
                 why += ", with effects.shading"
+        elif name in coupled:
+            together, why = coupled, _COUPLED_WHY
+        taken = [one for one in systems if one is system or one.get_name() in together]
         leaves = [leaf for one in taken for leaf in _list_leaves(one)]
         parts.append(
             make_part(name, kind, why, sum(own_s.get(leaf, 0.0) for leaf in leaves))
@@ -263,12 +269,18 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
     return parts
 
 
-def _find_chained(haptic: HapticDiagram) -> tuple[str, ...]:
-    """Returns the names of the systems whose work is one call of the core."""
+def _find_chained(
+    haptic: HapticDiagram,
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Returns the names of the systems whose work is one call of the core.
+
+    Returns:
+        The systems of the tool's step, and those of the wrench on the device.
+    """
     loop = haptic.loop
     if loop.penalty is None or not loop.contact_query.HasOutputPort(CHAIN):
-        return ()
-    return _CHAINED
+        return (), ()
+    return _CHAINED, _COUPLED if loop.effects.passivity is None else ()
 
 
 def _list_systems(haptic: HapticDiagram) -> list[System]:

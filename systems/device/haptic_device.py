@@ -26,6 +26,7 @@ class HapticDevice(Diagram):
         name: HapticDevice
         input_ports:
         - F_Ho_W_commanded
+        - coupled_motions
         - handle_slopes (if the backend has it)
         output_ports:
         - X_WH
@@ -36,6 +37,7 @@ class HapticDevice(Diagram):
 
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] to render on the handle at its origin
       in the world, N·m and N.
+    * `coupled_motions` (39) is that of `RenderedForceHold`; it need not be connected.
     * `handle_slopes` (72) is that of `DeviceIo`.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
@@ -80,7 +82,8 @@ class HapticDevice(Diagram):
             hold.GetOutputPort("F_Ho_W_rendered"),
             backend.GetInputPort("F_Ho_W_rendered"),
         )
-        builder.ExportInput(hold.GetInputPort("F_Ho_W_commanded"), "F_Ho_W_commanded")
+        for port in map(hold.get_input_port, range(hold.num_input_ports())):
+            builder.ExportInput(port, port.get_name())
         self._wants_slopes = backend.HasInputPort("handle_slopes")
         if self._wants_slopes:
             builder.ExportInput(backend.GetInputPort("handle_slopes"), "handle_slopes")

@@ -10,7 +10,7 @@ from pydrake.systems.framework import (
     DiscreteValues,
 )
 
-from drake_haptics._core import AutoDiffVector, limit_wrench
+from drake_haptics._core import AutoDiffVector, limit_coupling, limit_wrench
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
@@ -36,12 +36,18 @@ class RenderedForceHold(Diagram):
         name: RenderedForceHold
         input_ports:
         - F_Ho_W_commanded
+        - coupled_motions
         output_ports:
         - F_Ho_W_rendered
         - status
 
     `F_Ho_W_commanded` and `F_Ho_W_rendered` are wrenches [τ; f], N·m and N. `status`
     (1) describes the last sample: 0 rendered as commanded, 1 limited, 2 not finite.
+
+    `coupled_motions` (39) is `motions_and_gains` of the `VirtualCoupling` that commands
+    the wrench; it need not be connected. With it the core computes that wrench and its
+    limits in one call, bit for bit as `F_Ho_W_commanded` has it, which then serves for
+    derivatives.
 
     The state is one discrete group (7), [F_Ho_W_rendered; status], updated every period
     from 0 s on; it depends on nothing before the sample.
@@ -66,7 +72,8 @@ class RenderedForceHold(Diagram):
         sample = builder.AddNamedSystem(
             "sample", _LimitedSample(period_s, max_force_N, max_torque_Nm)
         )
-        builder.ExportInput(sample.get_input_port(), "F_Ho_W_commanded")
+        for port in map(sample.get_input_port, range(2)):
+            builder.ExportInput(port, port.get_name())
         export_parts(
             builder, sample.get_output_port(), {"F_Ho_W_rendered": 6, "status": 1}
         )
@@ -79,6 +86,8 @@ _STATE_NAMES = "tau_x tau_y tau_z f_x f_y f_z status".split()
 class _LimitedSample(DifferentiableSystem):
     """The state of a `RenderedForceHold`, and its update."""
 
+    undifferentiated = frozenset({"coupled_motions"})
+
     def __init__(self, period_s: float, max_force_N: float, max_torque_Nm: float):
         super().__init__()
         self._max_force_N = max_force_N
@@ -86,17 +95,18 @@ class _LimitedSample(DifferentiableSystem):
         self._eval_F_Ho_W_commanded = self.DeclareVectorInputPort(
             "F_Ho_W_commanded", 6
         ).Eval
+        coupled = self.DeclareVectorInputPort("coupled_motions", 39)
+        self._is_coupled, self._eval_coupled = coupled.HasValue, coupled.Eval
         self.DeclareStateOutputPort("shown", self.DeclareDiscreteState(7))
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        next_state.set_value(
-            limit_wrench(
-                self._eval_F_Ho_W_commanded(context),
-                self._max_torque_Nm,
-                self._max_force_N,
-            )
-        )
+        limits = self._max_torque_Nm, self._max_force_N
+        if self._is_coupled(context):
+            shown = limit_coupling(self._eval_coupled(context), *limits)
+        else:
+            shown = limit_wrench(self._eval_F_Ho_W_commanded(context), *limits)
+        next_state.set_value(shown)
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the state."""

@@ -10,14 +10,12 @@ from typing import Any
 import numpy as np
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import AbstractValue, Value
-from pydrake.math import RigidTransform
 from pydrake.multibody.math import SpatialForce_
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce_
 from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.framework.differentiable_system import (
     get_no_witness_functions,
 )
@@ -70,7 +68,7 @@ def AppliedWrenches_(T: type) -> type:
           world, N·m and N.
         * `F_O_W_<name>` (6 for each object) are such wrenches on the objects, in
           their order.
-        * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (32) that of
+        * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (39) that of
           `VirtualCoupling`. With them the core computes the first two wrenches on the
           tool, those of the contacts and of the coupling, bit for bit as the inputs
           have them; those inputs then serve for inspection and for derivatives.
@@ -88,7 +86,7 @@ def AppliedWrenches_(T: type) -> type:
             tool_wrenches: Sequence[str],
             objects: Sequence[BodyIndex] = (),
             object_wrenches: Sequence[str] = (),
-            chained_at: RigidTransform | None = None,
+            enable_chain: bool = False,
             warn_of_depth: Callable[[Any, float, float], None] | None = None,
             converter: Any = None,
         ) -> None:
@@ -99,8 +97,8 @@ def AppliedWrenches_(T: type) -> type:
                 tool_wrenches: A name for each wrench on the tool.
                 objects: Bodies of the objects that move.
                 object_wrenches: A name for each set of wrenches on the objects.
-                chained_at: X_HT of the coupling, if contacts and coupling are computed
-                    here; they are the first two wrenches on the tool then.
+                enable_chain: Whether contacts and coupling are computed here; they are
+                    the first two wrenches on the tool then.
                 warn_of_depth: Function `warn_of_depth` of the `ContactClustering`,
                     which the chain bypasses. Defaults to no warning.
                 converter: Scalar converter, which Drake passes.
@@ -117,15 +115,14 @@ def AppliedWrenches_(T: type) -> type:
                 self.DeclareVectorInputPort(f"F_O_W_{name}", 6 * len(objects)).Eval
                 for name in object_wrenches
             ]
-            self._chained_at = chained_at
+            self._enable_chain = enable_chain
             self._warn_of_depth = warn_of_depth
-            if chained_at is not None:
-                self._q_HT = pose_to_vector(chained_at)
+            if enable_chain:
                 self._eval_chain = self.DeclareAbstractInputPort(
                     "contact_chain", Value[object]()
                 ).Eval
                 self._eval_joined = self.DeclareVectorInputPort(
-                    "motions_and_gains", 32
+                    "motions_and_gains", 39
                 ).Eval
             self.DeclareAbstractOutputPort(
                 "applied_spatial_force",
@@ -143,7 +140,7 @@ def AppliedWrenches_(T: type) -> type:
                 on_tool,
                 objects,
                 on_objects,
-                other._chained_at,
+                other._enable_chain,
                 other._warn_of_depth,
                 converter,
             )
@@ -151,10 +148,10 @@ def AppliedWrenches_(T: type) -> type:
         def _add_up_on_tool(self, context: Any) -> Any:
             """Returns the sum of the wrenches (6,) on the tool."""
             # The chain has no derivatives.
-            if self._chained_at is None or T is not float:
+            if not self._enable_chain or T is not float:
                 return add_up(self._eval_on_tool, context)
             chain = self._eval_chain(context)
-            first = chain.find_coupled_force(self._eval_joined(context), self._q_HT)
+            first = chain.find_coupled_force(self._eval_joined(context))
             if self._warn_of_depth is not None:
                 self._warn_of_depth(context, *chain.deepest)
             return add_up(self._eval_on_tool[2:], context, [first])

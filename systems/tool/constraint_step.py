@@ -272,18 +272,20 @@ class _ConstraintStep(DifferentiableSystem):
 
     def _differentiate_coupling(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrenches (84,) of `coupling_wrench`."""
-        gains = gains_to_vector(at.parameters[self._gains])
+        fixed = np.concatenate(
+            [gains_to_vector(at.parameters[self._gains]), self._q_HT]
+        )
         parts = [
             at["X_WH"],
             at["V_WH"],
             at.state,
-            AutoDiffVector(gains, np.zeros((len(gains), at.num_derivatives))),
+            AutoDiffVector(fixed, np.zeros((len(fixed), at.num_derivatives))),
         ]
         joined = AutoDiffVector(
             np.concatenate([part.value for part in parts]),
             np.vstack([part.gradient for part in parts]),
         )
-        return joined_coupling_wrench(joined, self._q_HT)
+        return joined_coupling_wrench(joined)
 
     def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns next state, wrench on the tool and on each object."""

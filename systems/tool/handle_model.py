@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -14,7 +13,6 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import handle_slopes
-from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.framework.differentiable_system import (
     get_no_witness_functions,
 )
@@ -59,14 +57,14 @@ class HandleModel(LeafSystem):
         self,
         wrench_names: Sequence[str],
         *,
-        chained_at: RigidTransform | None = None,
+        enable_chain: bool = False,
     ):
         """Constructs the system.
 
         Args:
             wrench_names: A name for each wrench on the tool besides the coupling's.
-            chained_at: X_HT of the coupling, if coupling and contacts are computed by
-                the chain; see `HapticTool`.
+            enable_chain: Whether coupling and contacts are computed by the chain; see
+                `HapticTool`.
         """
         super().__init__()
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
@@ -76,13 +74,12 @@ class HandleModel(LeafSystem):
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
         calc = self._calc
-        if chained_at is not None:
-            self._q_HT = pose_to_vector(chained_at)
+        if enable_chain:
             self._eval_chain = self.DeclareAbstractInputPort(
                 "contact_chain", Value[object]()
             ).Eval
             self._eval_joined = self.DeclareVectorInputPort(
-                "motions_and_gains", 32
+                "motions_and_gains", 39
             ).Eval
             calc = self._calc_chained
         self.DeclareVectorOutputPort(
@@ -104,7 +101,6 @@ class HandleModel(LeafSystem):
         output.set_value(
             self._eval_chain(context).handle_slopes(
                 self._eval_joined(context),
-                self._q_HT,
                 [port.Eval(context) for port in self._wrenches[1:]],
             )
         )

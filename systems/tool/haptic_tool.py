@@ -45,7 +45,7 @@ class HapticTool(Diagram):
     Each wrench is a wrench model (78) as `PenaltyForce` documents it; one that is
     not connected counts as zero.
 
-    * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (32) that of
+    * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (39) that of
       `VirtualCoupling`. With them the core computes the first two wrenches, those of
       the coupling and of the contacts, within the step, bit for bit as the inputs have
       them; those inputs then serve for inspection and for derivatives.
@@ -65,7 +65,7 @@ class HapticTool(Diagram):
         wrench_names: Sequence[str],
         X_WT: RigidTransform,
         *,
-        chained_at: RigidTransform | None = None,
+        enable_chain: bool = False,
     ):
         """Constructs the system.
 
@@ -74,8 +74,8 @@ class HapticTool(Diagram):
             period_s: The tick, s.
             wrench_names: A name for each input port.
             X_WT: Default pose of the tool, which starts at rest.
-            chained_at: X_HT of the coupling, if coupling and contacts are computed
-                within the step; they are the first two wrenches then.
+            enable_chain: Whether coupling and contacts are computed within the step;
+                they are the first two wrenches then.
 
         Raises:
             ValueError: The period is not positive.
@@ -87,7 +87,7 @@ class HapticTool(Diagram):
         builder = DiagramBuilder()
         step = builder.AddNamedSystem(
             "step",
-            _ImplicitStep(dynamics, period_s, wrench_names, X_WT, chained_at),
+            _ImplicitStep(dynamics, period_s, wrench_names, X_WT, enable_chain),
         )
         for port in map(step.get_input_port, range(step.num_input_ports())):
             builder.ExportInput(port, port.get_name())
@@ -124,7 +124,7 @@ class _ImplicitStep(DifferentiableSystem):
         period_s: float,
         wrench_names: Sequence[str],
         X_WT: RigidTransform,
-        chained_at: RigidTransform | None,
+        enable_chain: bool,
     ):
         super().__init__()
         self._dynamics = dynamics
@@ -133,20 +133,19 @@ class _ImplicitStep(DifferentiableSystem):
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
         # Coupling and contacts come from the chain, if there is one.
-        self._read = self._wrenches if chained_at is None else self._wrenches[2:]
+        self._read = self._wrenches[2:] if enable_chain else self._wrenches
         self._eval_read = [port.Eval for port in self._read]
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
         self._eval_state = self.DeclareStateOutputPort("state", state).Eval
         update = self._update
-        if chained_at is not None:
-            self._q_HT = pose_to_vector(chained_at)
+        if enable_chain:
             self._eval_chain = self.DeclareAbstractInputPort(
                 "contact_chain", Value[object]()
             ).Eval
             self._eval_joined = self.DeclareVectorInputPort(
-                "motions_and_gains", 32
+                "motions_and_gains", 39
             ).Eval
             update = self._update_chained
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, update)
@@ -162,7 +161,6 @@ class _ImplicitStep(DifferentiableSystem):
         next_state.set_value(
             self._eval_chain(context).step_tool(
                 self._eval_joined(context),
-                self._q_HT,
                 self._dynamics,
                 self._period_s,
                 self._read_wrenches(context),

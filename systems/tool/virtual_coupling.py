@@ -53,12 +53,12 @@ class VirtualCoupling(Diagram):
       documents it.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
       world, N·m and N.
-    * `motions_and_gains` (32) holds all that both depend on: the inputs, in this order,
-      and the gains.
+    * `motions_and_gains` (39) holds all that both depend on: the inputs, in this order,
+      the gains, and the pose X_HT at which the spring rests.
 
-    The gains are a numeric parameter (6) of the Context, in the order of
-    `drake_haptics._core.CouplingGains`; see `set_gains`. Outputs have no derivatives
-    with respect to them.
+    The gains (6), in the order of `drake_haptics._core.CouplingGains`, and X_HT (7) are
+    a numeric parameter (13) of the Context; see `set_gains`. Outputs have no
+    derivatives with respect to them.
     """
 
     def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
@@ -80,11 +80,14 @@ class VirtualCoupling(Diagram):
             )
         self._X_HT = X_HT
         builder = DiagramBuilder()
-        spring = builder.AddNamedSystem("spring", _SpringAndDamper(X_HT))
+        spring = builder.AddNamedSystem("spring", _SpringAndDamper())
         # A system of Drake passes them on with the motions: reading a parameter in
         # Python takes longer than the law.
         self._gains = builder.AddNamedSystem(
-            "gains", ConstantVectorSource(gains_to_vector(gains))
+            "gains",
+            ConstantVectorSource(
+                np.concatenate([gains_to_vector(gains), pose_to_vector(X_HT)])
+            ),
         )
         import_parts(
             builder,
@@ -108,7 +111,7 @@ class VirtualCoupling(Diagram):
             context: Context of this system.
         """
         own = self.GetSubsystemContext(self._gains, context)
-        return CouplingGains(*self._gains.get_source_value(own).value())
+        return CouplingGains(*self._gains.get_source_value(own).value()[:6])
 
     def set_gains(self, context: Context, gains: CouplingGains) -> None:
         """Changes the gains, from now on.
@@ -123,7 +126,9 @@ class VirtualCoupling(Diagram):
         if not isinstance(gains, CouplingGains):
             raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
         own = self.GetMutableSubsystemContext(self._gains, context)
-        self._gains.get_mutable_source_value(own).SetFromVector(gains_to_vector(gains))
+        self._gains.get_mutable_source_value(own).SetFromVector(
+            np.concatenate([gains_to_vector(gains), pose_to_vector(self._X_HT)])
+        )
 
     @property
     def X_HT(self) -> RigidTransform:
@@ -131,7 +136,7 @@ class VirtualCoupling(Diagram):
         return self._X_HT
 
 
-# Inputs of the spring and damper; the gains follow them.
+# Inputs of the spring and damper; the gains and X_HT follow them.
 _MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WT": 7, "V_WT": 6}
 
 
@@ -171,27 +176,25 @@ def coupling_wrench(
         (84,): the wrench model on the tool at To (78), then the reaction on the handle
         at Ho in W (6), [torque; force].
     """
-    joined = np.concatenate([q_WH, V_WH, q_WT, V_WT, gains_to_vector(gains)])
-    return joined_coupling_wrench(joined, q_HT)
+    return joined_coupling_wrench(
+        np.concatenate([q_WH, V_WH, q_WT, V_WT, gains_to_vector(gains), q_HT])
+    )
 
 
 class _SpringAndDamper(DifferentiableSystem):
     """Both wrenches of a `VirtualCoupling` from one call of the core."""
 
-    def __init__(self, X_HT: RigidTransform):
+    def __init__(self) -> None:
         super().__init__()
-        self._q_HT = pose_to_vector(X_HT)
         # Bound once, because looking up a method takes as long as adding vectors.
-        self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 32).Eval
+        self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 39).Eval
         self.DeclareVectorOutputPort(
             "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}
         )
 
     def _calc_wrenches(self, context: Context, wrenches: BasicVector) -> None:
-        wrenches.set_value(
-            joined_coupling_wrench(self._eval_joined(context), self._q_HT)
-        )
+        wrenches.set_value(joined_coupling_wrench(self._eval_joined(context)))
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrenches with their derivatives."""
-        return joined_coupling_wrench(at["motions_and_gains"], self._q_HT)
+        return joined_coupling_wrench(at["motions_and_gains"])

@@ -284,7 +284,7 @@ def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain() -> Non
         _TICK,
         names,
         RigidTransform(),
-        chained_at=loop.virtual_coupling.X_HT,
+        enable_chain=True,
     )
     context = tool.CreateDefaultContext()
     tool.get_input_port(0).FixValue(context, np.full(78, 1e3))

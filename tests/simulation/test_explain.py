@@ -60,13 +60,9 @@ def build_with_own_arm(haptic):
     return replace(haptic, diagram=builder.Build(), loop=loop)
 
 
-# The core does the work of four systems, or five with shading, in one call.
-ALWAYS = [
-    "rendered_force_hold",
-    "simulated_arm",
-    "virtual_coupling",
-    "contact_chain",
-]
+# The core does the work of four systems, or five with shading, in one call, and that of
+# coupling and hold, unless passivity control comes in between, in another.
+ALWAYS = ["rendered_force_hold", "simulated_arm", "contact_chain"]
 REST = "Drake and the rest"
 
 
@@ -89,6 +85,7 @@ def explain(scene, meshcat=None):
 def test_a_bare_scene_has_what_is_always_there(tmp_path):
     parts, _ = explain(touching(tmp_path, Effects()))
     assert [part.name for part in parts] == [*ALWAYS, REST]
+    assert parts[0].why.startswith("always: couples tool and handle, limits")
     for part in parts:
         assert "effects" not in part.why
         assert part.mean_us > 0.0, part.name
@@ -98,7 +95,9 @@ def test_each_effect_is_there_by_its_key_and_takes_time(tmp_path):
     parts, _ = explain(touching(tmp_path, Effects(**EVERY)))
     (chain,) = (part for part in parts if part.name == "contact_chain")
     assert chain.why.endswith("in one call, with effects.shading")
-    added = [part for part in parts if part.name not in [*ALWAYS, REST]]
+    expected = [*ALWAYS[:2], "virtual_coupling", ALWAYS[2], REST]
+    assert [part.name for part in parts if part.name in expected] == expected
+    added = [part for part in parts if part.name not in expected]
     assert {part.why: part.system for part in added} == {
         "effects.friction": "StickSlipFriction",
         "effects.braking": "PreContactBraking",
@@ -117,7 +116,7 @@ def test_a_device_of_the_users_own_is_a_part_that_is_said_to_be_theirs(tmp_path)
     parts = {part.name: part for part in explain_tick(theirs, timer)}
     assert parts["my_arm"].why == "yours: it was added to the loop"
     assert parts["my_arm"].system == "StillArm"
-    assert parts["rendered_force_hold"].why == "always: limits what the device shows"
+    assert parts["rendered_force_hold"].why.endswith("limits what the device shows")
     assert sum(part.share for part in parts.values()) == pytest.approx(1.0)
 
 

@@ -66,12 +66,12 @@ class TrackedChain : public SceneTracker {
   }
 
   StateVector StepTool(const JoinedVector<double>& joined,
-                       const PoseVector& q_HT, const ToolInertia& inertia,
-                       double h, const Models& others) {
+                       const ToolInertia& inertia, double h,
+                       const Models& others) {
     // The sum is in the order of `RigidToolDynamics.step` of [coupling,
     // contact, others].
     WrenchModel sum;
-    sum += ComputeJoinedCoupling(joined, q_HT).tool;
+    sum += ComputeJoinedCoupling(joined).tool;
     const ToolState state = StateOf(joined);
     sum += FindWrench(state);
     for (const WrenchModelVector& other : others) sum += ToWrenchModel(other);
@@ -86,10 +86,8 @@ class TrackedChain : public SceneTracker {
   }
 
   // The sum is in the order of `AppliedWrenches`: contact, coupling.
-  Vec6 FindCoupledForce(const JoinedVector<double>& joined,
-                        const PoseVector& q_HT) {
-    return FindWrench(StateOf(joined)).F +
-           ComputeJoinedCoupling(joined, q_HT).tool.F;
+  Vec6 FindCoupledForce(const JoinedVector<double>& joined) {
+    return FindWrench(StateOf(joined)).F + ComputeJoinedCoupling(joined).tool.F;
   }
 
   FrictionStep FindFriction(const StickSlipModel& friction,
@@ -136,8 +134,7 @@ class TrackedChain : public SceneTracker {
   }
 
   Eigen::Matrix<double, 72, 1> FindHandleSlopes(
-      const JoinedVector<double>& joined, const PoseVector& q_HT,
-      const Models& others) {
+      const JoinedVector<double>& joined, const Models& others) {
     const ToolState state = StateOf(joined);
     WrenchModel contact;
     contact += FindWrench(state);
@@ -146,7 +143,7 @@ class TrackedChain : public SceneTracker {
     }
     const HandleSlopes slopes =
         ComputeHandleSlopes(state.q_WT.tail<3>() - joined.segment<3>(4),
-                            ComputeJoinedCoupling(joined, q_HT).tool, contact);
+                            ComputeJoinedCoupling(joined).tool, contact);
     Eigen::Matrix<double, 72, 1> out;
     using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
     Eigen::Map<Rows>(out.data()) = slopes.K;
@@ -211,12 +208,11 @@ void BindContactChain(nb::module_& m) {
            "As `SceneTracker.query`, but for a pose vector (7,) equal to the "
            "last one the last results are returned.")
       .def("step_tool", &TrackedChain::StepTool, nb::arg("joined"),
-           nb::arg("q_HT"), nb::arg("dynamics"), nb::arg("h"),
-           nb::arg("others"),
+           nb::arg("dynamics"), nb::arg("h"), nb::arg("others"),
            "The tool's next state (13,): `RigidToolDynamics.step` under the "
            "coupling, the contacts and other wrench models, in this order.\n\n"
            "Args:\n"
-           "    joined, q_HT: arguments of `joined_coupling_wrench`.\n"
+           "    joined: argument of `joined_coupling_wrench`.\n"
            "    dynamics: inertia of the tool.\n"
            "    h: duration of the step, s.\n"
            "    others: other wrench models (78,).\n\n"
@@ -227,8 +223,8 @@ void BindContactChain(nb::module_& m) {
            "The wrench (6,) [torque; force] of the contacts on the tool at To, "
            "N·m and N, at its pose (7,) and spatial velocity (6,).")
       .def("find_coupled_force", &TrackedChain::FindCoupledForce,
-           nb::arg("joined"), nb::arg("q_HT"),
-           "The sum of that wrench and the coupling's, for the arguments of "
+           nb::arg("joined"),
+           "The sum of that wrench and the coupling's, for the argument of "
            "`joined_coupling_wrench`.")
       .def("find_friction", &TrackedChain::FindFriction, nb::arg("friction"),
            nb::arg("state"), nb::arg("X_WT"), nb::arg("V_WT"),
@@ -254,7 +250,7 @@ void BindContactChain(nb::module_& m) {
            "infinite without contacts) and the time of the query (s), for the "
            "tool in a state (13,).")
       .def("handle_slopes", &TrackedChain::FindHandleSlopes, nb::arg("joined"),
-           nb::arg("q_HT"), nb::arg("others"),
+           nb::arg("others"),
            "`handle_slopes` (72,) of the coupling and of the contacts plus "
            "other wrench models, for the arguments of `step_tool`.")
       .def("__deepcopy__", [](const TrackedChain& self,

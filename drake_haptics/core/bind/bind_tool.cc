@@ -61,33 +61,33 @@ CouplingGains MakeGains(double k, double b, double kr, double br,
   return {k, b, kr, br, max_force, max_torque};
 }
 
+// Takes what has no derivatives from `values`, and all else from `in`.
 template <typename T>
-auto CoupleJoined(const JoinedVector<T>& in, const PoseVector& q_HT,
-                  const CouplingGains& gains) {
+auto CoupleJoined(const JoinedVector<T>& in,
+                  const JoinedVector<double>& values) {
+  const PoseVector q_HT = values.tail<7>();
   return ComputeCoupling<T>(in.template head<7>(), in.template segment<6>(7),
                             q_HT, in.template segment<7>(13),
-                            in.template segment<6>(20), gains);
-}
-
-CouplingGains GainsOf(const JoinedVector<double>& in) {
-  return MakeGains(in[26], in[27], in[28], in[29], in[30], in[31]);
+                            in.template segment<6>(20),
+                            MakeGains(values[26], values[27], values[28],
+                                      values[29], values[30], values[31]));
 }
 
 void BindJoinedCoupling(nb::module_& m) {
   m.def(
       "joined_coupling_wrench",
-      [](const JoinedVector<double>& joined, const PoseVector& q_HT) {
-        return ToVector(ComputeJoinedCoupling(joined, q_HT));
+      [](const JoinedVector<double>& joined) {
+        return ToVector(ComputeJoinedCoupling(joined));
       },
-      nb::arg("joined"), nb::arg("q_HT"),
+      nb::arg("joined"),
       "Wrenches of the virtual coupling between handle H and tool, from one "
       "vector as a multiplexer joins it: each array that is passed takes as "
       "long as the law.\n\n"
       "Args:\n"
-      "    joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the "
-      "order of `CouplingGains`; poses [qw qx qy qz x y z], spatial velocities "
-      "[rad/s; m/s].\n"
-      "    q_HT: (7,) pose of the tool in the handle.\n\n"
+      "    joined: (39,) [q_WH; V_WH; q_WT; V_WT; gains; q_HT], the gains (6) "
+      "in the order of `CouplingGains`, q_HT the pose of the tool in the "
+      "handle at rest; poses [qw qx qy qz x y z], spatial velocities [rad/s; "
+      "m/s].\n\n"
       "Returns:\n"
       "    (84,): wrench model on the tool at To (78), then the reaction on "
       "the handle at Ho in W (6).\n\n"
@@ -95,19 +95,19 @@ void BindJoinedCoupling(nb::module_& m) {
       "    ValueError: a gain is out of range.");
   m.def(
       "joined_coupling_wrench",
-      [](const AutoDiffVector& joined, const PoseVector& q_HT) {
-        const auto in = ToScalars<32>(joined, "joined");
-        if (!joined.gradient.bottomRows<6>().isZero(0.0)) {
+      [](const AutoDiffVector& joined) {
+        const auto in = ToScalars<39>(joined, "joined");
+        if (!joined.gradient.bottomRows<13>().isZero(0.0)) {
           throw std::invalid_argument(
-              "joined must have no derivatives of the gains: the coupling is "
-              "not differentiated by them");
+              "joined must have no derivatives of the gains and of q_HT: the "
+              "coupling is not differentiated by them");
         }
         return ToAutoDiffVector(
-            ToVector(CoupleJoined<AutoDiff>(in, q_HT, GainsOf(joined.value))),
+            ToVector(CoupleJoined<AutoDiff>(in, joined.value)),
             joined.num_derivatives());
       },
-      nb::arg("joined"), nb::arg("q_HT"),
-      "The same with derivatives by all but the gains.");
+      nb::arg("joined"),
+      "The same with derivatives by all but the gains and q_HT.");
 }
 
 nb::tuple ToTuple(const CouplingGains& gains) {
@@ -224,32 +224,44 @@ void BindRigidTool(nb::module_& m) {
           "The same with derivatives.");
 }
 
+Eigen::Matrix<double, 7, 1> Limit(const Vec6& F, double max_torque,
+                                  double max_force) {
+  RequireNotNegative(max_torque, "max_torque_Nm");
+  RequireNotNegative(max_force, "max_force_N");
+  const LimitedWrench limited = LimitWrench(F, max_torque, max_force);
+  Eigen::Matrix<double, 7, 1> out;
+  out << limited.F, static_cast<double>(limited.fate);
+  return out;
+}
+
 void BindLimit(nb::module_& m) {
+  m.def("limit_wrench", &Limit, nb::arg("F"), nb::arg("max_torque_Nm"),
+        nb::arg("max_force_N"),
+        "Shortens torque and force of a wrench (6,), [N·m; N], each to its "
+        "limit, along its own direction.\n\n"
+        "Returns:\n"
+        "    (7,): the limited wrench and a number: 0 if it is unchanged, 1 if "
+        "it was limited, 2 if it was not finite and is zero.\n\n"
+        "Raises:\n"
+        "    ValueError: a limit is negative or not finite.");
   m.def(
-      "limit_wrench",
-      [](const Vec6& F, double max_torque, double max_force) {
-        RequireNotNegative(max_torque, "max_torque_Nm");
-        RequireNotNegative(max_force, "max_force_N");
-        const LimitedWrench limited = LimitWrench(F, max_torque, max_force);
-        Eigen::Matrix<double, 7, 1> out;
-        out << limited.F, static_cast<double>(limited.fate);
-        return out;
+      "limit_coupling",
+      [](const JoinedVector<double>& joined, double max_torque,
+         double max_force) {
+        return Limit(ComputeJoinedCoupling(joined).F_Ho_W_commanded, max_torque,
+                     max_force);
       },
-      nb::arg("F"), nb::arg("max_torque_Nm"), nb::arg("max_force_N"),
-      "Shortens torque and force of a wrench (6,), [N·m; N], each to its "
-      "limit, along its own direction.\n\n"
-      "Returns:\n"
-      "    (7,): the limited wrench and a number: 0 if it is unchanged, 1 if "
-      "it was limited, 2 if it was not finite and is zero.\n\n"
+      nb::arg("joined"), nb::arg("max_torque_Nm"), nb::arg("max_force_N"),
+      "The same for the reaction on the handle of `joined_coupling_wrench`.\n\n"
       "Raises:\n"
-      "    ValueError: a limit is negative or not finite.");
+      "    ValueError: a limit is negative or not finite, or a gain is out of "
+      "range.");
 }
 
 }  // namespace
 
-CouplingWrench ComputeJoinedCoupling(const JoinedVector<double>& joined,
-                                     const PoseVector& q_HT) {
-  return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
+CouplingWrench ComputeJoinedCoupling(const JoinedVector<double>& joined) {
+  return CoupleJoined<double>(joined, joined);
 }
 
 void BindTool(nb::module_& m) {

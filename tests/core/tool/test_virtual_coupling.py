@@ -129,10 +129,10 @@ GAINS_OF_FULL = [900.0, 2.0, 1.5, 0.004, np.inf, np.inf]
 
 
 def joined_of(seed: int) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Returns a vector (32,) as a multiplexer joins it, and the case it is of."""
+    """Returns a vector (39,) as a multiplexer joins it, and the case it is of."""
     case = random_case(seed)
-    q_WH, _, q_WT, V_WH, V_WT = case
-    return np.concatenate([q_WH, V_WH, q_WT, V_WT, GAINS_OF_FULL]), case
+    q_WH, q_HT, q_WT, V_WH, V_WT = case
+    return np.concatenate([q_WH, V_WH, q_WT, V_WT, GAINS_OF_FULL, q_HT]), case
 
 
 @pytest.mark.parametrize(
@@ -145,19 +145,35 @@ def joined_of(seed: int) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
     ],
 )
 def test_a_joined_vector_is_checked(at: int, bad: float, said: str) -> None:
-    joined, (_, q_HT, *_) = joined_of(0)
+    joined, _ = joined_of(0)
     joined[at] = bad
     with pytest.raises(ValueError, match=said):
-        _core.joined_coupling_wrench(joined, q_HT)
+        _core.joined_coupling_wrench(joined)
 
 
-def test_derivatives_by_gains_are_refused_not_left_out() -> None:
-    joined, (_, q_HT, *_) = joined_of(0)
-    gradient = np.zeros((32, 1))
-    _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient), q_HT)
-    gradient[27] = 1.0
+@pytest.mark.parametrize("seed", range(8))
+def test_the_reaction_is_limited_as_a_wrench_is(seed: int) -> None:
+    joined, _ = joined_of(seed)
+    reaction = _core.joined_coupling_wrench(joined)[78:]
+    torque, force = np.linalg.norm(reaction[:3]), np.linalg.norm(reaction[3:])
+    for limits in [(2 * torque, 2 * force), (torque / 2, 2 * force), (0.0, 0.0)]:
+        limited = _core.limit_coupling(joined, *limits)
+        np.testing.assert_array_equal(limited, _core.limit_wrench(reaction, *limits))
+    with pytest.raises(ValueError, match="max_torque_Nm"):
+        _core.limit_coupling(joined, -1.0, 1.0)
+    joined[26] = -1.0
+    with pytest.raises(ValueError, match="coupling gains"):
+        _core.limit_coupling(joined, 1.0, 1.0)
+
+
+@pytest.mark.parametrize("row", [27, 33])
+def test_derivatives_by_gains_and_rest_are_refused_not_left_out(row: int) -> None:
+    joined, _ = joined_of(0)
+    gradient = np.zeros((39, 1))
+    _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient))
+    gradient[row] = 1.0
     with pytest.raises(ValueError, match="no derivatives of the gains"):
-        _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient), q_HT)
+        _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient))
 
 
 def test_gains_are_equal_where_all_numbers_are() -> None:

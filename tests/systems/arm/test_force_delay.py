@@ -24,7 +24,7 @@ def test_it_is_the_hold_shifted_by_as_many_ticks(samples):
     source = builder.AddSystem(TrajectorySource(asked))
     hold = builder.AddSystem(RenderedForceHold(PERIOD, 1e9, 1e9))
     delay = builder.AddSystem(ForceDelay(PERIOD, samples))
-    builder.Connect(source.get_output_port(), hold.get_input_port())
+    builder.Connect(source.get_output_port(), hold.GetInputPort("F_Ho_W_commanded"))
     shown = hold.GetOutputPort("F_Ho_W_rendered")
     builder.Connect(shown, delay.get_input_port())
     simulator = make_simulator(builder.Build())

@@ -3,23 +3,28 @@
 import numpy as np
 import pytest
 from pydrake.autodiffutils import InitializeAutoDiff
+from pydrake.math import RigidTransform
 from twin_check import check_twin
 
+from drake_haptics._core import CouplingGains
 from drake_haptics.systems.device.rendered_force_hold import (
     LIMITED,
     NOT_FINITE,
     SHOWN_AS_ASKED,
     RenderedForceHold,
 )
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 MAX_FORCE, MAX_TORQUE = 8.5, 0.188
 
 
-def sample(wrench):
+def sample(wrench, coupled_motions=None):
     """Returns F_Ho_W_rendered and status after one tick."""
     hold = RenderedForceHold(1e-3, MAX_FORCE, MAX_TORQUE)
     context = hold.CreateDefaultContext()
     hold.GetInputPort("F_Ho_W_commanded").FixValue(context, np.array(wrench, float))
+    if coupled_motions is not None:
+        hold.GetInputPort("coupled_motions").FixValue(context, coupled_motions)
     context.SetDiscreteState(
         hold.EvalUniquePeriodicDiscreteUpdate(context).get_vector().CopyToVector()
     )
@@ -27,6 +32,27 @@ def sample(wrench):
         hold.GetOutputPort("F_Ho_W_rendered").Eval(context),
         hold.GetOutputPort("status").Eval(context)[0],
     )
+
+
+def test_a_coupling_is_computed_and_limited_in_one_call():
+    """Bit for bit as its wrench; the other input is not read then."""
+    rng = np.random.default_rng(3)
+    coupling = VirtualCoupling(
+        CouplingGains(200.0, 1.0, 0.5, 1e-3), RigidTransform([0.01, -0.02, 0.03])
+    )
+    for size in (1e-3, 1.0):
+        motions = coupling.CreateDefaultContext()
+        for name in ("X_WH", "X_WT"):
+            pose = np.concatenate([[1.0, 0, 0, 0], size * rng.normal(size=3)])
+            coupling.GetInputPort(name).FixValue(motions, pose)
+        for name in ("V_WH", "V_WT"):
+            coupling.GetInputPort(name).FixValue(motions, size * rng.normal(size=6))
+        wrench = coupling.GetOutputPort("F_Ho_W_commanded").Eval(motions)
+        joined = coupling.GetOutputPort("motions_and_gains").Eval(motions)
+        expected, status = sample(wrench)
+        found, same = sample(np.full(6, np.nan), joined)
+        np.testing.assert_array_equal(found, expected)
+        assert same == status == (LIMITED if size == 1.0 else SHOWN_AS_ASKED)
 
 
 def test_within_the_limits_it_shows_what_is_asked():
@@ -103,7 +129,8 @@ def test_what_is_not_finite_has_no_derivatives_that_are_not():
     twin = RenderedForceHold(1e-3, MAX_FORCE, MAX_TORQUE).ToAutoDiffXd()
     context = twin.CreateDefaultContext()
     asked = np.array([0.0, 0.0, 0.0, np.inf, np.nan, 1.0])
-    twin.get_input_port().FixValue(context, InitializeAutoDiff(asked).ravel())
+    commanded = twin.GetInputPort("F_Ho_W_commanded")
+    commanded.FixValue(context, InitializeAutoDiff(asked).ravel())
     state = twin.EvalUniquePeriodicDiscreteUpdate(context).get_vector()
     for entry, value in zip(
         state.CopyToVector(), [0.0] * 6 + [NOT_FINITE], strict=True
