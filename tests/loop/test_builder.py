@@ -172,7 +172,9 @@ def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path, effects):
     fed = sources(diagram)
     for system in diagram.GetSystems():
         for i in range(system.num_input_ports()):
-            assert f"{system.get_name()}.{system.get_input_port(i).get_name()}" in fed
+            name = f"{system.get_name()}.{system.get_input_port(i).get_name()}"
+            # An object moves, so that there is no chain.
+            assert (name in fed) == (name != "device.coupled_motions"), name
     assert {key for key, source in fed.items() if source == "pose.y0"} == {
         key for key in fed if key.endswith(".X_WO_cart")
     }
