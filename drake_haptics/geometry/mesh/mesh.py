@@ -291,10 +291,12 @@ def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.nda
     Returns:
         p_MMcm (3,), m, and I_MMcm_M (3, 3), kg·m².
     """
-    a, b, c = np.swapaxes(mesh.vertices[mesh.triangles], 0, 1)
+    # About the mesh's middle, since about a far origin all digits would cancel.
+    middle = mesh.vertices.mean(axis=0)
+    a, b, c = np.swapaxes((mesh.vertices - middle)[mesh.triangles], 0, 1)
     corner_sum = a + b + c
     if mesh.solid.all():
-        # Tetrahedra from the origin, signed (their fourth corner is 0).
+        # Tetrahedra from the middle, signed (their fourth corner is 0).
         weight = np.einsum("ni,ni->n", np.cross(a, b), c) / 6.0
         first = corner_sum / 4.0
         second = 1.0 / 20.0
@@ -303,10 +305,10 @@ def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.nda
         first = corner_sum / 3.0
         second = 1.0 / 12.0
     weight = weight * (mass_kg / weight.sum())
-    p_MMcm = weight @ first / mass_kg
+    center = weight @ first / mass_kg
     # The second moment of a simplex from its vertices and their sum.
     moment = np.zeros((3, 3))
     for corner in (a, b, c, corner_sum):
         moment += second * np.einsum("n,ni,nj->ij", weight, corner, corner)
-    moment -= mass_kg * np.outer(p_MMcm, p_MMcm)
-    return p_MMcm, np.trace(moment) * np.eye(3) - moment
+    moment -= mass_kg * np.outer(center, center)
+    return middle + center, np.trace(moment) * np.eye(3) - moment

@@ -36,6 +36,19 @@ def test_a_turned_shape_agrees_with_trimesh():
     np.testing.assert_allclose(inertia, cone.moment_inertia, atol=1e-12)
 
 
+@pytest.mark.parametrize("is_open", [False, True])
+def test_a_part_far_from_its_origin_keeps_its_inertia(is_open):
+    # As in the frame of a site or of a large assembly; powers of two move exactly.
+    part = trimesh.creation.icosphere(subdivisions=2, radius=2.0**-6)
+    vertices = np.round(part.vertices * 2.0**30) * 2.0**-30
+    faces = part.faces[:-1] if is_open else part.faces
+    offset = np.array([512.0, -256.0, 1024.0])
+    near = calc_mass_properties(Mesh.from_arrays(vertices, faces), MASS)
+    far = calc_mass_properties(Mesh.from_arrays(vertices + offset, faces), MASS)
+    np.testing.assert_allclose(far[0] - offset, near[0], atol=1e-12)
+    np.testing.assert_allclose(far[1], near[1], rtol=1e-6, atol=1e-15)
+
+
 def test_a_hollow_is_hollow():
     outer = trimesh.creation.icosphere(subdivisions=3, radius=0.1)
     inner = trimesh.creation.icosphere(subdivisions=3, radius=0.09)
