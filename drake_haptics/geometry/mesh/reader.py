@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import struct
-import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -73,19 +72,23 @@ def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
 
 def _read_npz(path: Path) -> RawMesh:
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            missing = [key for key in ("V", "F") if key not in archive]
-            if missing:
-                raise MeshError(
-                    f"{path}: holds no array {' and no array '.join(missing)}; a mesh "
-                    f"in .npz needs V (n, 3) and F (m, 3), this one has "
-                    f"{', '.join(archive.files) or 'nothing'}"
-                )
-            return RawMesh(archive["V"], archive["F"])
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        if isinstance(error, MeshError):
-            raise
-        raise MeshError(f"{path}: cannot be read as .npz: {error}") from error
+        # Unlike `numpy.load`, this reads nothing but an archive.
+        with open(path, "rb") as stream, np.lib.npyio.NpzFile(stream) as archive:
+            names = archive.files
+            arrays = {key: archive[key] for key in ("V", "F") if key in names}
+    except Exception as error:  # damaged archives raise various errors
+        raise MeshError(
+            f"{path}: cannot be read as .npz ({type(error).__name__}: {error}); the"
+            f" file is damaged or is not what its name says: export it again"
+        ) from error
+    missing = [key for key in ("V", "F") if key not in arrays]
+    if missing:
+        raise MeshError(
+            f"{path}: holds no array {' and no array '.join(missing)}; a mesh "
+            f"in .npz needs V (n, 3) and F (m, 3), this one has "
+            f"{', '.join(names) or 'nothing'}"
+        )
+    return RawMesh(arrays["V"], arrays["F"])
 
 
 def _read_with_trimesh(path: Path) -> RawMesh:

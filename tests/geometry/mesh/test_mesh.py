@@ -111,6 +111,25 @@ def test_an_npz_file_without_the_arrays_is_refused(tmp_path):
         load_mesh(tmp_path / "b.npz")
 
 
+def test_a_damaged_npz_file_is_refused_by_name(tmp_path):
+    def refuse(name):
+        with pytest.raises(MeshError, match=rf"{name}: cannot be read as \.npz") as why:
+            load_mesh(tmp_path / name)
+        assert "allow_pickle" not in str(why.value)
+
+    V, F = box()
+    trimesh.Trimesh(V, F).export(tmp_path / "renamed.npz", file_type="stl")
+    refuse("renamed.npz")
+    with open(tmp_path / "array.npz", "wb") as stream:
+        np.save(stream, V)
+    refuse("array.npz")
+    np.savez_compressed(tmp_path / "whole.npz", V=V, F=F)
+    data = bytearray((tmp_path / "whole.npz").read_bytes())
+    data[60:90] = bytes(30)  # in the compressed vertices
+    (tmp_path / "noise.npz").write_bytes(data)
+    refuse("noise.npz")
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
