@@ -173,7 +173,7 @@ def calc_exact_alpha(beta: float, delay_samples: int) -> float:
 
 def _end_of_angles(delay_samples: int) -> float:
     """Returns the θ at which the boundary returns to α = 0."""
-    if delay_samples < 0 or delay_samples != int(delay_samples):
+    if not (delay_samples >= 0 and float(delay_samples).is_integer()):
         raise ValueError(
             f"delay_samples must be a whole number, at least 0, is {delay_samples}"
         )

@@ -87,7 +87,7 @@ def test_it_is_plain_data():
     assert data["peak"]["beta"] == pytest.approx(0.42469, abs=1e-5)
 
 
-@pytest.mark.parametrize("delay", [-1, 0.5])
+@pytest.mark.parametrize("delay", [-1, 0.5, np.nan, np.inf])
 def test_a_delay_that_is_not_whole_is_refused(delay):
     for function in (calc_exact_boundary, calc_boundary_peak):
         with pytest.raises(ValueError, match="delay_samples must be a whole number"):
