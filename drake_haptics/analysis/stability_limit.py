@@ -14,6 +14,9 @@ from scipy.optimize import brentq
 from drake_haptics.analysis.modes import NEUTRAL
 from drake_haptics.analysis.sampled_map import get_state, set_state
 
+# Logarithms of values that differ by less cannot be told apart.
+_LEAST_TOLERANCE = 1e-12
+
 
 @dataclass(frozen=True)
 class StabilityLimit:
@@ -74,11 +77,17 @@ def find_stability_limit(
         start: First value to try, in the range.
         lowest: Lower end of the range, above 0.
         highest: Upper end of the range, at least `lowest`.
-        relative_tolerance: Relative tolerance of the limit.
+        relative_tolerance: Relative tolerance of the limit, from 1e-12 on.
 
     Raises:
-        ValueError: The range is empty or not above 0, or `start` is not in it.
+        ValueError: The range is empty or not above 0, `start` is not in it, or the
+            tolerance is below round-off or not below 1.
     """
+    if not _LEAST_TOLERANCE <= relative_tolerance < 1.0:
+        raise ValueError(
+            f"relative_tolerance must be from {_LEAST_TOLERANCE:g} to below 1, is"
+            f" {relative_tolerance}"
+        )
     if not 0.0 < lowest <= start <= highest:
         raise ValueError(
             f"start must be in the range from lowest to highest, above 0: {lowest:g} <="

@@ -52,6 +52,18 @@ def test_a_start_out_of_range_is_refused(start, lowest, highest):
         find_stability_limit(growth_of_wall, start, lowest=lowest, highest=highest)
 
 
+@pytest.mark.parametrize("tolerance", [0.0, 1e-17, 1.0, math.nan])
+def test_a_tolerance_that_no_search_reaches_is_refused(tolerance):
+    with pytest.raises(ValueError, match="relative_tolerance must be from 1e-12"):
+        find_stability_limit(
+            lambda x: math.nan if x > 30.0 else 0.9,
+            1.0,
+            lowest=1.0,
+            highest=1e3,
+            relative_tolerance=tolerance,
+        )
+
+
 def test_neutral_motions_do_not_grow():
     assert calc_growth(np.array([1.0, 1.0 - 1e-9j, 0.9, -0.95])) == pytest.approx(0.95)
     assert calc_growth(np.array([1.0, 1.00001])) == pytest.approx(1.00001)
