@@ -99,7 +99,8 @@ def _read_with_trimesh(path: Path) -> RawMesh:
         raise MeshError(
             f"{path}: trimesh reads no format {path.suffix or '(no suffix)'} here; "
             f"it reads {', '.join(sorted(formats))} and this program .npz. Convert "
-            f"the file, or install the reader that trimesh asks for"
+            f"the file, or install the reader that trimesh asks for. SDF, URDF and "
+            f"MJCF models are read only where a scene file names one as `mesh`"
         )
     try:
         with _silent_trimesh():

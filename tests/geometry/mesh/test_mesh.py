@@ -67,6 +67,9 @@ def test_unusable_files_are_refused_by_name(tmp_path):
     refuse("nan.obj", b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "NaN")
     refuse("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "index 8|vertex 8")
     refuse("mesh.xyzw", b"?", "trimesh reads no format .xyzw")
+    refuse(
+        "robot.urdf", b"<robot/>", "URDF and MJCF models are read only where a scene"
+    )
     with pytest.raises(MeshError, match="no such file"):
         load_mesh(tmp_path / "absent.stl")
     with pytest.raises(MeshError, match="is a folder"):
