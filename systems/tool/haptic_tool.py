@@ -135,6 +135,7 @@ class _ImplicitStep(DifferentiableSystem):
         # Coupling and contacts come from the chain, if there is one.
         self._read = self._wrenches[2:] if enable_chain else self._wrenches
         self._eval_read = [port.Eval for port in self._read]
+        self._has_free = False
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
@@ -169,11 +170,14 @@ class _ImplicitStep(DifferentiableSystem):
 
     def _read_wrenches(self, context: Context) -> list[np.ndarray]:
         """Returns the wrench models that are read and connected."""
-        try:
-            return [eval_wrench(context) for eval_wrench in self._eval_read]
-        except RuntimeError:
-            # Asking first would take as long as reading.
-            return [port.Eval(context) for port in self._read if port.HasValue(context)]
+        # Asking which are connected takes as long as reading them, and an exception
+        # longer than a tick: a free one is met once.
+        if not self._has_free:
+            try:
+                return [eval_wrench(context) for eval_wrench in self._eval_read]
+            except RuntimeError:
+                self._has_free = True
+        return [port.Eval(context) for port in self._read if port.HasValue(context)]
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the state."""
