@@ -11,7 +11,6 @@ from click.shell_completion import CompletionItem, get_completion_class
 
 from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.common.errors import HapticsError
-from drake_haptics.geometry.mesh.units import METERS_PER_UNIT
 
 _ADDRESSES = {
     "udp://127.0.0.1:7400": "a driver, such as `drake-haptics device`",
@@ -50,13 +49,6 @@ def complete_address(
         for address, what in _ADDRESSES.items()
         if address.startswith(incomplete)
     ]
-
-
-def complete_unit(
-    _: click.Context, __: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
-    """Completes length units."""
-    return _complete(METERS_PER_UNIT, incomplete)
 
 
 def complete_setting(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from drake_haptics.cli.completion import complete_setting, complete_unit
+from drake_haptics.cli.completion import complete_setting
 from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.mesh.decimation import decimate
@@ -47,7 +47,7 @@ def unit_options(function: _Function) -> _Function:
     """Adds --unit and --scale."""
     scale = click.option(
         "--scale",
-        type=float,
+        type=click.FloatRange(min=0, min_open=True),
         metavar="METERS",
         help="Meters per unit of the file, instead of --unit.",
     )
@@ -62,8 +62,8 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
     """
     return click.option(
         "--unit",
+        type=click.Choice(list(METERS_PER_UNIT)),
         metavar="UNIT",
-        shell_complete=complete_unit,
         help=f"Length unit of {what}: {', '.join(METERS_PER_UNIT)}.  [default: m]",
     )
 

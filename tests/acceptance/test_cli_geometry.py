@@ -54,7 +54,8 @@ def test_check_writes_json(l_file, tmp_path):
 @pytest.mark.parametrize(
     ("words", "code", "says"),
     [
-        (["check", "L", "--unit", "x"], 1, "unit 'x'"),
+        (["check", "L", "--unit", "x"], 2, "'--unit': 'x'"),
+        (["check", "L", "--scale", "-1"], 2, "'--scale': -1"),
         (["check"], 2, "MESH"),
         (["decompose", "L", "--method", "cubes"], 2, "cubes"),
         (["check", "L", "--json", "absent/o.json"], 1, "--json: there is no folder"),
