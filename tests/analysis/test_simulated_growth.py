@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from pydrake.symbolic import Variable, if_then_else
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.primitives import LinearSystem
+from pydrake.systems.primitives import LinearSystem, SymbolicVectorSystem
 
 from drake_haptics.analysis.sampled_map import get_state
 from drake_haptics.analysis.stability_limit import measure_growth
@@ -67,3 +68,18 @@ def test_a_disturbance_out_of_sight_is_an_error(radius):
             (np.ones(1), np.ones(1)),
             PERIOD_S,
         )
+
+
+def test_jumps_of_the_amplitude_are_not_taken_for_growth():
+    """As where a contact opens or closes, which is no part of the mode."""
+    x, k = Variable("x"), Variable("k")
+    jump = if_then_else(k == 100.0, 1.5, if_then_else(k == 200.0, 0.6, 1.0))
+    system = SymbolicVectorSystem(
+        state=[x, k], dynamics=[0.995 * jump * x, k + 1.0], time_period=PERIOD_S
+    )
+    mode = np.array([1.0, 0.0])
+    context = system.CreateDefaultContext()
+    growth = measure_growth(
+        lambda start: Simulator(system, start), context, (mode, mode), PERIOD_S
+    )
+    assert growth == pytest.approx(0.995, rel=1e-9)
