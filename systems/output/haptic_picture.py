@@ -133,28 +133,19 @@ class HapticPicture:
         # Too short to be seen until handle and tool move apart.
         meshcat.SetProperty(f"{_ROOT}/coupling/line", "scale", [1.0, 1.0, _NO_LENGTH_M])
         self._max_force_N, self._max_torque_Nm = max_force_N, max_torque_Nm
-        self._force = ArrowPool(
-            meshcat, f"{_ROOT}/force", 1, [line], LONG_ARROW, self.parts
-        )
+        self._force = ArrowPool(self.parts, f"{_ROOT}/force", 1, [line], LONG_ARROW)
         self._torque = ArrowPool(
-            meshcat,
-            f"{_ROOT}/torque",
-            1,
-            [Rgba(*colors.TORQUE)],
-            DOUBLE_ARROW,
-            self.parts,
+            self.parts, f"{_ROOT}/torque", 1, [Rgba(*colors.TORQUE)], DOUBLE_ARROW
         )
         pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
-        self._contacts = ArrowPool(
-            meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair, parts=self.parts
-        )
+        self._contacts = ArrowPool(self.parts, f"{_ROOT}/contacts", _MAX_CONTACTS, pair)
         self._clusters = ArrowPool(
-            meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair, LONG_ARROW, self.parts
+            self.parts, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair, LONG_ARROW
         )
         pair = [Rgba(*colors.STICKING_CONTACT), Rgba(*colors.SLIDING_CONTACT)]
         most = _MAX_CLUSTERS if has_friction else 0
         self._friction = ArrowPool(
-            meshcat, f"{_ROOT}/friction", most, pair, LONG_ARROW, self.parts
+            self.parts, f"{_ROOT}/friction", most, pair, LONG_ARROW
         )
 
     def show(self, view: str, visible: bool) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Iterator, Sequence
 
 import numpy as np
@@ -45,13 +44,14 @@ class MovingParts:
     takes most of a processor. At rest there is nothing to draw.
 
     Attributes:
+        meshcat: The Meshcat.
         records: Whether everything is sent, because a recording needs every frame.
     """
 
     def __init__(self, meshcat: Meshcat):
         """Starts with nothing sent."""
+        self.meshcat = meshcat
         self.records = False
-        self._meshcat = meshcat
         self._poses: dict[str, RigidTransform] = {}
         self._scales: dict[str, np.ndarray] = {}
 
@@ -60,14 +60,14 @@ class MovingParts:
         last = self._poses.get(path)
         if self.records or last is None or not X.IsNearlyEqualTo(last, _STILL):
             self._poses[path] = RigidTransform(X)
-            self._meshcat.SetTransform(path, X, time_s)
+            self.meshcat.SetTransform(path, X, time_s)
 
     def scale(self, path: str, scale: list[float], time_s: float) -> None:
         """Scales a part, to another scale than zero."""
         last = self._scales.get(path)
         if self.records or last is None or not np.allclose(last, scale, _STILL, 0.0):
             self._scales[path] = np.array(scale)
-            self._meshcat.SetProperty(path, "scale", scale, time_s)
+            self.meshcat.SetProperty(path, "scale", scale, time_s)
 
 
 class ArrowPool:
@@ -84,37 +84,33 @@ class ArrowPool:
 
     def __init__(
         self,
-        meshcat: Meshcat,
+        parts: MovingParts,
         path: str,
         capacity: int,
         colors: Sequence[Rgba],
         profile: Profile = SHORT_ARROW,
-        parts: MovingParts | None = None,
     ):
         """Sends the arrows to Meshcat, hidden.
 
         Args:
-            meshcat: Meshcat to draw in.
+            parts: Parts of the Meshcat to draw in.
             path: Folder of the arrows in the scene tree.
             capacity: Number of arrows that can be visible at once.
             colors: Colors that an arrow can have.
             profile: Outline of an arrow of length 1.
-            parts: Parts of the same Meshcat. Defaults to new ones.
         """
-        self._meshcat = meshcat
-        self._parts = parts or MovingParts(meshcat)
+        self._parts, self._meshcat = parts, parts.meshcat
         self._num_colors = len(colors)
         self._slots = [f"{path}/{i}" for i in range(capacity)]
         self._slot_of_key: dict[Hashable, int] = {}
         # Color shown in each slot; None where hidden.
         self._shown: list[int | None] = [None] * capacity
-        self._lengths = [1.0] * capacity
         vertices, triangles = _make_arrow(profile)
         for slot in self._slots:
             for color, rgba in enumerate(colors):
                 arrow = f"{slot}/arrow/{color}"
-                meshcat.SetTriangleMesh(arrow, vertices, triangles, rgba)
-                meshcat.SetProperty(arrow, "visible", False)
+                self._meshcat.SetTriangleMesh(arrow, vertices, triangles, rgba)
+                self._meshcat.SetProperty(arrow, "visible", False)
 
     def draw(
         self,
@@ -126,7 +122,7 @@ class ArrowPool:
     ) -> Iterator[None]:
         """Shows only these arrows, or the first ones if there are too many.
 
-        Each step of the iteration sends one message to the page.
+        Each step of the iteration sends at most one message to the page.
 
         Args:
             keys: (n,) distinct keys of what the arrows represent.
@@ -148,11 +144,8 @@ class ArrowPool:
             self._parts.place(self._slots[i], X_WArrow, time_s)
             yield
             length = float(np.linalg.norm(vector))
-            if not math.isclose(length, self._lengths[i], rel_tol=1e-6):
-                self._lengths[i] = length
-                path = f"{self._slots[i]}/arrow"
-                self._meshcat.SetProperty(path, "scale", [length] * 3, time_s)
-                yield
+            self._parts.scale(f"{self._slots[i]}/arrow", [length] * 3, time_s)
+            yield
         for i, shown in enumerate(visible):
             if shown != self._shown[i]:
                 self._show(i, shown, time_s)

@@ -9,7 +9,7 @@ from pydrake.geometry import Rgba
 from pydrake.math import RigidTransform
 from visualizer_rig import MAX_TORQUE_NM, X_WH, make_context, make_mesh, make_visualizer
 
-from drake_haptics.systems.output.meshcat_shapes import ArrowPool
+from drake_haptics.systems.output.meshcat_shapes import ArrowPool, MovingParts
 from drake_haptics.visualization.meshcat import start_meshcat
 
 LENGTH_M = 0.02
@@ -26,7 +26,7 @@ SCALE = """(() => {
 def test_arrows_keep_their_size_however_they_move(chromium, early):
     """Whether the page was open from the start or came to a loop that runs."""
     meshcat = start_meshcat()
-    pool = ArrowPool(meshcat, "/arrows", 1, [Rgba(1, 0, 0)])
+    pool = ArrowPool(MovingParts(meshcat), "/arrows", 1, [Rgba(1, 0, 0)])
 
     def draw(x):
         vector = np.array([[0, 0, LENGTH_M]])

@@ -27,7 +27,7 @@ from visualizer_rig import (
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.output import haptic_visualizer
-from drake_haptics.systems.output.meshcat_shapes import ArrowPool
+from drake_haptics.systems.output.meshcat_shapes import ArrowPool, MovingParts
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_contacts_are_green_near_and_red_penetrating(meshcat, visualizer):
 
 
 def test_an_arrow_that_moves_keeps_its_length(meshcat):
-    pool = ArrowPool(meshcat, "/a", 1, [Rgba(1, 0, 0)])
+    pool = ArrowPool(MovingParts(meshcat), "/a", 1, [Rgba(1, 0, 0)])
     for x in (0.0, 0.1, 0.2):
         p_W = np.array([[x, 0, 0]])
         list(pool.draw([0], p_W, np.array([[0, 0, 0.02]]), [0], 0.0))
@@ -295,7 +295,7 @@ def test_a_view_that_there_is_not_is_refused():
 
 
 def test_an_arrow_stays_in_its_slot_while_others_come_and_go(meshcat):
-    pool = ArrowPool(meshcat, "/a", 4, [Rgba(1, 0, 0)])
+    pool = ArrowPool(MovingParts(meshcat), "/a", 4, [Rgba(1, 0, 0)])
     up = np.array([[0, 0, 1.0]] * 3)
 
     def draw(keys):
@@ -318,7 +318,7 @@ def test_an_arrow_stays_in_its_slot_while_others_come_and_go(meshcat):
 
 
 def test_what_does_not_change_is_not_sent_again(meshcat):
-    pool = ArrowPool(meshcat, "/a", 64, [Rgba(1, 0, 0), Rgba(0, 1, 0)])
+    pool = ArrowPool(MovingParts(meshcat), "/a", 64, [Rgba(1, 0, 0), Rgba(0, 1, 0)])
     calls = []
     meshcat.SetProperty = lambda *args: calls.append(args)
     list(pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0))
