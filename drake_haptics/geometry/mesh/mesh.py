@@ -291,12 +291,15 @@ def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.nda
     Returns:
         p_MMcm (3,), m, and I_MMcm_M (3, 3), kg·m².
     """
-    # About the mesh's middle, since about a far origin all digits would cancel.
-    middle = mesh.vertices.mean(axis=0)
+    # Near the mesh, since about a far origin all digits would cancel: at a multiple of
+    # a power of two, by which vertices move without rounding.
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    size = 2.0 ** np.ceil(np.log2((high - low).max()))
+    middle = size * np.round((low + high) / 2.0 / size)
     a, b, c = np.swapaxes((mesh.vertices - middle)[mesh.triangles], 0, 1)
     corner_sum = a + b + c
     if mesh.solid.all():
-        # Tetrahedra from the middle, signed (their fourth corner is 0).
+        # Tetrahedra from there, signed (their fourth corner is 0).
         weight = np.einsum("ni,ni->n", np.cross(a, b), c) / 6.0
         first = corner_sum / 4.0
         second = 1.0 / 20.0
