@@ -240,12 +240,13 @@ class Listing {
   }
 
   void Append(const Vec3& n, Feature a, Feature b) {
+    const double h = n.dot(pair_.a(pair_.A.first_vertex_of(a)) -
+                           pair_.b(pair_.B.first_vertex_of(b)));
+    if (!IsWanted(n, h)) return;
     const NormalConeSupport support =
         ClassifySupport(pair_.A, a, n, pair_.B, b, R_BA_ * n);
     if (support != NormalConeSupport::kSupported) return;
-    const double h = n.dot(pair_.a(pair_.A.first_vertex_of(a)) -
-                           pair_.b(pair_.B.first_vertex_of(b)));
-    if (IsWanted(n, h)) facets_.push_back({h, n, a, b, support});
+    facets_.push_back({h, n, a, b, support});
   }
 
   const PosedPair& pair_;

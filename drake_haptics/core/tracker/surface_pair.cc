@@ -153,9 +153,10 @@ class Query {
     state_.overlaps = true;
     const bool is_new = !state_.in_contact && !WasRefused();
     const std::optional<Depth> entry = is_new ? Entry() : std::nullopt;
+    // The proof holds for contacts of other pairs too: none is taken over.
     if (is_new && !entry && !MayBegin()) {
       is_refused_ = true;
-      return TransferredFrom();
+      return std::nullopt;
     }
     Depth depth = entry               ? *entry
                   : state_.in_contact ? WarmDepth()
@@ -268,6 +269,11 @@ class Query {
     if (is_walked || pair_.A.dimension < 2 || pair_.B.dimension < 2) {
       return std::nullopt;
     }
+    // Pieces that overlapped at the last pose have not come together since.
+    if (!request_.is_any_way_out &&
+        HoldsOrigin({pair_.A, pair_.B, request_.last_X_AB}, state_.simplex)) {
+      return std::nullopt;
+    }
     const auto facet =
         FindEntry(pair_, request_, state_.vertex_pair, &workspace_);
     if (!facet) return std::nullopt;
@@ -366,14 +372,17 @@ class Query {
   std::optional<PairContact> TransferredFrom() {
     // Contacts along one normal lead to the same facet: one of them will do.
     const Vec3* tried = nullptr;
+    bool may_find = state_.in_contact;
     for (const PenetratingContact& last : request_.pressed) {
       if (last.is_kept || !last.IsNear(pair_.A, pair_.B)) continue;
-      if (tried == nullptr && !state_.in_contact && !MayFind(nullptr)) {
-        return std::nullopt;
-      }
       if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
       tried = &last.n;
-      const auto contact = Held(pair_.X_AB.R * last.n);
+      const Vec3 n = pair_.X_AB.R * last.n;
+      // Most pairs are apart along it; only for others a search is ruled out.
+      if (!(GapAlong(n) < 0)) continue;
+      may_find = may_find || MayFind(nullptr);
+      if (!may_find) return std::nullopt;
+      const auto contact = Held(n);
       if (contact) return contact;
     }
     return std::nullopt;
