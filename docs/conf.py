@@ -40,6 +40,7 @@ smartquotes_action = "qe"  # no dashes: --headless is an option in sentences too
 autoclass_content = "both"  # constructors are documented where they are
 autodoc_default_options = {"members": True}
 autodoc_member_order = "bysource"
+autodoc_use_type_comments = False  # there are none; it would parse every function
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 # What stands before a colon or in parentheses is a shape or a unit more often than a
