@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+from functools import cache
 
 from library_counts import count_parts, run_benchmark
 from pydrake.systems.analysis import Simulator
@@ -68,12 +69,16 @@ def run_counted(scene: str, loop: str) -> None:
     if loop == "run":
         _run_counted(scene)
         return
-    problem = make_problem(scene, _TICK_S * (_WARM_UP + _TICKS + 1))
-    simulator = _make_simulator(problem, loop)
+    simulator = _make_simulator(_find_problem(scene), loop)
     # Between two ticks, so that round-off does not move one.
     simulator.AdvanceTo((_WARM_UP + 0.5) * _TICK_S)
     with counted():
         simulator.AdvanceTo((_WARM_UP + _TICKS + 0.5) * _TICK_S)
+
+
+@cache  # loops share it: valgrind takes ten seconds to record it
+def _find_problem(scene: str) -> LoopProblem:
+    return make_problem(scene, _TICK_S * (_WARM_UP + _TICKS + 1))
 
 
 def _make_simulator(problem: LoopProblem, loop: str) -> Simulator:
