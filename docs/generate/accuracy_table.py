@@ -15,8 +15,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from page_parts import find_part, make_parser, replace_part, to_markdown
-from page_stamp import amend_page, write_page
+from page_parts import find_part, make_parser, to_markdown
+from page_stamp import amend_page, show_parts
 
 from drake_haptics.cli.console import progress_bar
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, Row
@@ -103,13 +103,6 @@ def make_advice(studies: dict[str, AccuracyStudy]) -> str:
         f"- **{name}**: {' '.join(describe_verdict(study))}\n"
         for name, study in studies.items()
     )
-
-
-def with_parts(page: str, parts: dict[str, str]) -> str:
-    """Returns the page with new parts between their marks."""
-    for name, text in parts.items():
-        page = replace_part(page, text, name)
-    return page
 
 
 def measure_prices(name: str, store: Path | None) -> AccuracyStudy:
@@ -212,10 +205,8 @@ def main() -> None:
         **{name: make_prices(study, SCENES[name]) for name, study in studies.items()},
         ADVICE_NAME: make_advice(studies),
     }
-    print("\n".join(parts.values()))
+    show_parts(PAGE, parts, __file__, arguments.write)
     if arguments.write:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, with_parts(page, parts), __file__)
         for name, study in studies.items():
             draw_study(study).savefig(get_picture(name), dpi=_DPI)
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import matplotlib
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from wall_motion import HAND, NO_HAND, TABLE, find_simulated_limit, make_wall
 
 from drake_haptics.analysis.exact_boundary import (
@@ -86,15 +86,6 @@ def _tell(start: str, differences: Iterable[float]) -> str:
 PARTS = {"boundaries": make_boundaries, "walls": make_walls}
 
 
-def with_parts(page: str) -> str:
-    """Returns the page with the present tables."""
-    for name, make in PARTS.items():
-        part = make()
-        print(part)
-        page = replace_part(page, part, name)
-    return page
-
-
 def draw() -> None:
     """Draws the boundaries, whole and near the origin."""
     matplotlib.use("Agg")
@@ -120,9 +111,9 @@ def draw() -> None:
 def main() -> None:
     """Prints the tables, and writes page and picture if asked to."""
     write = make_parser(__doc__, PAGE).parse_args().write
-    page = with_parts(PAGE.read_text(encoding="utf-8"))
+    parts = {name: make() for name, make in PARTS.items()}
+    show_parts(PAGE, parts, __file__, write)
     if write:
-        write_page(PAGE, page, __file__)
         draw()
 
 

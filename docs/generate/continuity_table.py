@@ -6,7 +6,6 @@ python docs/generate/continuity_table.py --jobs 3 --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -18,8 +17,8 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from continuity_rig import CAUSES, JUMP, Steps, measure
 from continuity_scenes import SCENES, make_scene
 from continuity_walk import EPISODE_STEPS
-from page_parts import replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import write_parts
 from press_rig import GAINS, LARGEST_FORCE_N
 from wrench_chain import METHODS
 
@@ -90,16 +89,11 @@ def _measure(key: str, steps: int, methods: tuple[str, ...]) -> dict[str, Steps]
 
 def main() -> None:
     """Prints the table, and writes the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--scenes", nargs="*", default=[*SCENES], choices=SCENES)
     parser.add_argument("--methods", nargs="*", default=METHODS, choices=METHODS)
     parser.add_argument("--steps", type=int, default=100_000)
     parser.add_argument("--jobs", type=int, default=1, help="processes")
-    parser.add_argument(
-        "--write", action="store_true", help="write docs/verification/continuity.md"
-    )
     args = parser.parse_args()
     rows = []
     print(*TITLES, sep=" | ", flush=True)
@@ -118,10 +112,7 @@ def main() -> None:
             "steps": make_steps(rows),
             "gains": describe_gains(),
         }
-        page = PAGE.read_text(encoding="utf-8")
-        for name, text in parts.items():
-            page = replace_part(page, text, name)
-        write_page(PAGE, page, __file__)
+        write_parts(PAGE, parts, __file__)
 
 
 if __name__ == "__main__":

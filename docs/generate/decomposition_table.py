@@ -6,7 +6,6 @@ python docs/generate/decomposition_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import json
 import re
 import resource
@@ -22,8 +21,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from hull_truth import deepest_outside, deepest_surface, lost_share
 from mesh_samples import REAL_MESHES
-from page_parts import replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import write_parts
 from shapes import SHAPES
 from shapes.organ import make_organ
 
@@ -212,13 +211,10 @@ def _number(cell: str) -> float:
 
 def main() -> None:
     """Measures each mesh in a process of its own and prints the table."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--meshes", nargs="*", default=[*GENERATED, *VARIANTS, *REAL])
     parser.add_argument("--measure", metavar="MESH", help="one mesh, in this process")
     parser.add_argument("--points", type=int, default=1000, help="of hulls, per mesh")
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     args = parser.parse_args()
     if args.measure:
         print(json.dumps(measure(args.measure, args.points)))
@@ -235,10 +231,7 @@ def main() -> None:
         rows.append(row(json.loads(answer.stdout)))
         print("  ".join(rows[-1]), flush=True)
     if args.write:
-        page = PAGE.read_text(encoding="utf-8")
-        for name, part in make_parts(rows).items():
-            page = replace_part(page, part, name)
-        write_page(PAGE, page, __file__)
+        write_parts(PAGE, make_parts(rows), __file__)
 
 
 if __name__ == "__main__":

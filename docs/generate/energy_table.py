@@ -16,8 +16,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from law_runs import Penalty, Place, list_places, run_handle
 from law_table import MADE_J, PAGE, POINTS
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from press_cells import SHIPPED
 from press_rig import GAINS, PERIOD_S
 from scipy.spatial.transform import Rotation
@@ -159,10 +159,7 @@ def main() -> None:
     names = [limit, "energy made in them", *(f"of it by {s}" for s in SOURCES)]
     rows = [["", *motions], *map(list, zip(names, *columns, strict=True))]
     table = to_markdown(rows)
-    print(table)
-    if args.write:
-        text = replace_part(PAGE.read_text(encoding="utf-8"), table, "energy")
-        write_page(PAGE, text, __file__)
+    show_parts(PAGE, {"energy": table}, __file__, args.write)
 
 
 if __name__ == "__main__":

@@ -20,8 +20,8 @@ from cell_mesh import cell_mesh
 from contact_chain_diagram import ContactChain
 from contact_samples import box, pose
 from contact_state import METHODS, State, T, keeps_features, random_states
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from press_tools import MODELS
 from touching_poses import touching_pose
 
@@ -233,10 +233,7 @@ def main() -> None:
     parser.add_argument("--states", type=int, default=300, help="of each pair")
     arguments = parser.parse_args()
     part = make_part(list(rows(arguments.states)))
-    print(part)
-    if arguments.write:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, replace_part(page, part, "chain"), __file__)
+    show_parts(PAGE, {"chain": part}, __file__, arguments.write)
 
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from law_runs import LAWS, Place, Run, list_hollow_places, list_places, run_handle
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from peg_and_hole import peg_and_hole
 from press_cells import SHIPPED
 from press_rig import COUPLING, PERIOD_S
@@ -244,10 +244,7 @@ def main() -> None:
     args = parser.parse_args()
     by_law = [measure(law, args.points, SHIPPED) for law in LAWS]
     table = to_markdown(make_rows(by_law))
-    print(table)
-    if args.write:
-        text = replace_part(PAGE.read_text(encoding="utf-8"), table, "laws")
-        write_page(PAGE, text, __file__)
+    show_parts(PAGE, {"laws": table}, __file__, args.write)
 
 
 if __name__ == "__main__":

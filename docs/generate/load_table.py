@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 
 from drake_haptics import SceneTracker
 from drake_haptics._core import penalty_force, share_stiffness, thin_contacts
@@ -87,10 +87,7 @@ def main() -> None:
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; noisy."
         f" Medians over the ticks in contact.\n\n{to_markdown(rows())}"
     )
-    print(table)
-    if write:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, replace_part(page, table, "stages"), __file__)
+    show_parts(PAGE, {"stages": table}, __file__, write)
 
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from loop_gradients import LoopGradients, build_scene, calc_gradients, contact_states
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 
 PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
 SCENES = (
@@ -64,10 +64,7 @@ def main() -> None:
     """Prints the table, and writes the page if asked to."""
     write = make_parser(__doc__, PAGE).parse_args().write
     table = to_markdown(rows())
-    print(table)
-    if write:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, replace_part(page, table, "loops"), __file__)
+    show_parts(PAGE, {"loops": table}, __file__, write)
 
 
 if __name__ == "__main__":

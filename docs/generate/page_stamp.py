@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import re
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
+
+from page_parts import replace_part
 
 ROOT = Path(__file__).parents[2]
 # What figures depend on: pages change while figures are written into them.
@@ -61,6 +64,23 @@ def write_page(page: Path, text: str, generator: str | Path) -> None:
     """
     stamp = make_stamp(generator, describe_commit())
     page.write_text(with_stamp(text, stamp), encoding="utf-8")
+
+
+def write_parts(page: Path, parts: Mapping[str, str], generator: str | Path) -> None:
+    """Writes a page with new parts by name, and the time when they were made."""
+    text = page.read_text(encoding="utf-8")
+    for name, part in parts.items():
+        text = replace_part(text, part, name)
+    write_page(page, text, generator)
+
+
+def show_parts(
+    page: Path, parts: Mapping[str, str], generator: str | Path, write: bool
+) -> None:
+    """Prints parts of a page, and writes them into it if asked to."""
+    print("\n".join(parts.values()))
+    if write:
+        write_parts(page, parts, generator)
 
 
 def amend_page(page: Path, text: str, generator: str | Path, what: str) -> None:

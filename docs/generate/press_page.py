@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from page_parts import read_part, replace_part, to_markdown
-from page_stamp import describe_commit, write_page
+from page_parts import read_part, to_markdown
+from page_stamp import describe_commit, write_parts
 from press_cells import TITLES
 from press_rig import GAINS, LARGEST_FORCE_N
 
@@ -40,7 +40,6 @@ def write_presses(rows: Sequence[Sequence[str]], points: int) -> None:
         rows: Rows of press_cells.row, of both motions for each solid.
         points: Number of points of each row.
     """
-    page = PAGE.read_text(encoding="utf-8")
     made = [dict(zip(TITLES, row, strict=True)) for row in rows]
     pressed = {row["gains"] for row in made}
     kept = [row for row in read_rows() if row["gains"] not in pressed]
@@ -54,9 +53,7 @@ def write_presses(rows: Sequence[Sequence[str]], points: int) -> None:
         "shares": describe_shares([*kept, *made]),
         "presses": to_markdown(make_rows([*kept, *made])),
     }
-    for name, text in parts.items():
-        page = replace_part(page, text, name)
-    write_page(PAGE, page, GENERATOR)
+    write_parts(PAGE, parts, GENERATOR)
 
 
 def make_rows(results: Iterable[dict[str, str]]) -> list[list[str]]:

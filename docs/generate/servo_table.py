@@ -13,8 +13,8 @@ import matplotlib
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from servo_loop import (
     FAST_SERVO,
     HELD,
@@ -124,15 +124,6 @@ def _millimeters(length_m: float) -> str:
 TABLES: dict[str, Callable[[], str]] = {"stalls": make_stalls, "parts": make_parts}
 
 
-def with_tables(page: str) -> str:
-    """Returns the page with the present tables."""
-    for name, make in {**TABLES, "walls": make_walls}.items():
-        table = make()
-        print(table)
-        page = replace_part(page, table, name)
-    return page
-
-
 def draw_traces() -> None:
     """Draws one stall in a nominal hand that presses on a wall."""
     from matplotlib import pyplot
@@ -156,9 +147,9 @@ def draw_traces() -> None:
 def main() -> None:
     """Prints the tables, and writes page and pictures if asked to."""
     write = make_parser(__doc__, PAGE).parse_args().write
-    page = with_tables(PAGE.read_text(encoding="utf-8"))
+    tables = {name: make() for name, make in TABLES.items()} | {"walls": make_walls()}
+    show_parts(PAGE, tables, __file__, write)
     if write:
-        write_page(PAGE, page, __file__)
         matplotlib.use("Agg")
         draw_traces()
 

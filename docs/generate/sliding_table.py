@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from press_rig import GAINS
 from scipy.spatial.transform import Rotation
 from slide_rig import feel, make_slide_tools, slide, velocity
@@ -160,10 +160,7 @@ def main() -> None:
                 for height_m in HEIGHTS_M
             ]
     text = make_seams(slides)
-    print(text)
-    if write:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, replace_part(page, text, "seams"), __file__)
+    show_parts(PAGE, {"seams": text}, __file__, write)
 
 
 if __name__ == "__main__":

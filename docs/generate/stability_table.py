@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 from typing import get_args
 
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyze_scene
 from drake_haptics.analysis.stability_page import describe_delay
@@ -87,15 +87,6 @@ def make_limits(results: Results) -> str:
 PARTS = {"places": make_places, "limits": make_limits}
 
 
-def with_parts(page: str, results: Results) -> str:
-    """Returns the page with the present tables."""
-    for name, make in PARTS.items():
-        part = make(results)
-        print(part)
-        page = replace_part(page, part, name)
-    return page
-
-
 def analyze(name: str, map_size: int = 0) -> SceneStability:
     """Returns the stability of a shipped scene at its firmest contact."""
     print(name, file=sys.stderr)
@@ -109,9 +100,9 @@ def main() -> None:
         name: analyze(name, _MAP_SIZE if write and name == DRAWN else 0)
         for name in SCENES
     }
-    page = with_parts(PAGE.read_text(encoding="utf-8"), results)
+    parts = {name: make(results) for name, make in PARTS.items()}
+    show_parts(PAGE, parts, __file__, write)
     if write:
-        write_page(PAGE, page, __file__)
         results[DRAWN].plot().savefig(PICTURE, dpi=_DPI)
 
 

@@ -15,8 +15,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import write_parts
 from symptom_cases import CASES
 from symptom_run import Case
 
@@ -99,8 +99,7 @@ def main() -> None:
         table = to_markdown([HEAD, *rows])
         print(f"{section}\n\n{table}")
         if arguments.write:
-            page = PAGE.read_text(encoding="utf-8")
-            write_page(PAGE, replace_part(page, table, section), __file__)
+            write_parts(PAGE, {section: table}, __file__)
 
 
 if __name__ == "__main__":

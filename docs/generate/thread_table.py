@@ -12,8 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from degenerate_scenes import record
@@ -73,8 +73,8 @@ def make_row(label: str, shown: Turning) -> list[str]:
     return [label, f"{1e3 * lag_m:.3f}", f"{share:.2f}", f"{1e6 * shown.step_s:,.0f}"]
 
 
-def main() -> int:
-    """Prints the table, or writes it into the page."""
+def main() -> None:
+    """Prints the table, and writes it into the page if asked to."""
     write = make_parser(__doc__, PAGE).parse_args().write
     duration_s = TURNER_WAIT_S + TURNS / TURNS_PER_S + REST_S
     turners = {
@@ -92,13 +92,8 @@ def main() -> int:
             shown = turn(TURNS, TURNS_PER_S, duration_s, Path(folder))
         rows.append(make_row(label, shown))
     table = to_markdown([HEAD, *rows])
-    if not write:
-        print(table)
-        return 0
-    page = replace_part(PAGE.read_text(encoding="utf-8"), table, "thread")
-    write_page(PAGE, page, __file__)
-    return 0
+    show_parts(PAGE, {"thread": table}, __file__, write)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from page_parts import make_parser, replace_part, to_markdown
-from page_stamp import write_page
+from page_parts import make_parser, to_markdown
+from page_stamp import show_parts
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
@@ -185,10 +185,7 @@ def main() -> None:
     """Prints the table, and writes it into the page if asked to."""
     write = make_parser(__doc__, PAGE).parse_args().write
     table = to_markdown(rows())
-    print(table)
-    if write:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, replace_part(page, table, "costs"), __file__)
+    show_parts(PAGE, {"costs": table}, __file__, write)
 
 
 if __name__ == "__main__":

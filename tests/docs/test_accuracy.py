@@ -18,11 +18,10 @@ from accuracy_table import (
     make_prices,
     measure_errors,
     with_errors,
-    with_parts,
 )
 from command_line import invoke
 from markdown_page import read_table
-from page_parts import find_part, read_part
+from page_parts import find_part, read_part, replace_part
 
 from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS, list_settings
 from drake_haptics.evaluation.accuracy.report import COLUMNS
@@ -125,7 +124,7 @@ def test_commands_that_are_shown_have_options_that_exist() -> None:
 
 def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
     prices = make_prices(make_study())
-    renewed = with_parts(TEXT, {FIRST: prices})
+    renewed = replace_part(TEXT, prices, FIRST)
     assert "tool.max_triangles" in rows_of(renewed, FIRST)[-2][0]
     assert "**as it is**" in prices and "0.5 mm †" in prices and "| CoACD |" in prices
     for page in (TEXT, renewed):

@@ -39,9 +39,10 @@ def test_a_page_says_at_which_commit_its_figures_were_made(generator):
 def test_every_program_that_writes_figures_is_among_those_of_the_one_command():
     for file in (ROOT / "docs" / "generate").glob("*.py"):
         writes = re.search(
-            r'(?m)^ +write_page\(|"--write"|make_parser\(__doc__', file.read_text()
+            r'(?m)^ +(write_page|\w+_parts)\(|"--write"|make_parser\(__doc__',
+            file.read_text(),
         )
-        shared = ("page_parts.py", "press_page.py", "make_figures.py")
+        shared = ("page_parts.py", "page_stamp.py", "press_page.py", "make_figures.py")
         if writes and file.name not in shared:
             assert file.relative_to(ROOT).as_posix() in MADE
     for figures in FIGURES:
