@@ -16,6 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.common.value_checks import check_at_least, check_positive
@@ -143,8 +144,8 @@ def _calc_flow(
 def calc_largest_stiffness(wall: SampledWall) -> float:
     """Returns the stiffness K below which every wall is stable.
 
-    It tries stiffer walls, a factor of 1.09 apart, until one is unstable, and bisects
-    that step to 1e-10 of K. A stable wall beyond an unstable one would be missed (tests
+    It tries stiffer walls, a factor of 1.09 apart, until one is unstable, and finds
+    the edge to 1e-10 of K. A stable wall beyond an unstable one would be missed (tests
     over random walls found no such case). The result is zero if even the softest is
     unstable, as with too much damping of the wall.
 
@@ -185,20 +186,25 @@ def calc_gain_margin(wall: SampledWall) -> float:
 def calc_largest_delay(wall: SampledWall) -> float:
     """Returns the delay t_d below which every delay is stable, s.
 
-    It tries longer delays, a quarter of a period or 2 % apart, until one is unstable,
-    and bisects that step to a relative 1e-10. The result is zero if the wall is
-    unstable without delay, and infinite if its loop gain is below one at every
+    A delay turns the loop gain and keeps its size, so that the first unstable delay is
+    near the least one that turns a loop gain of one against the motion; from two
+    periods before that, it tries longer delays, a quarter of a period apart, until one
+    is unstable, and finds the edge to a relative 1e-10. The result is zero if the wall
+    is unstable without delay, and infinite if its loop gain is below one at every
     frequency, as for a soft wall in a firm hand.
 
     Args:
         wall: The wall, whose delay is not used.
     """
-    if _calc_largest_loop_gain(wall) < 1.0:
+    if replace(wall, delay_s=0.0).calc_spectral_radius() >= 1.0:
+        return 0.0
+    periods = _estimate_delay(wall)
+    if periods == math.inf:
         return math.inf
     return _find_edge(
         lambda delay_s: replace(wall, delay_s=delay_s),
-        start=0.0,
-        step=lambda delay_s: max(0.25 * wall.period_s, 0.02 * delay_s),
+        start=max(0, math.floor(periods) - 2) * wall.period_s,
+        step=lambda delay_s: 0.25 * wall.period_s,
     )
 
 
@@ -217,14 +223,34 @@ def _find_edge(
     stable = start
     while is_stable(tried := stable + step(stable)):
         stable = tried
-    while tried - stable > _RELATIVE_TOLERANCE * tried:
-        middle = 0.5 * (stable + tried)
-        stable, tried = (middle, tried) if is_stable(middle) else (stable, middle)
-    return stable
+    return float(
+        brentq(
+            lambda value: make_wall(value).calc_spectral_radius() - 1.0,
+            stable,
+            tried,
+            xtol=0.5 * _RELATIVE_TOLERANCE * tried,
+        )
+    )
 
 
-def _calc_largest_loop_gain(wall: SampledWall) -> float:
-    """Returns the largest loop gain of the wall's force over all frequencies."""
+def _estimate_delay(wall: SampledWall) -> float:
+    """Returns the periods of delay that turn a loop gain of one by half a turn.
+
+    It is infinite if the loop gain is below one at every frequency.
+    """
+    angles, gain = _calc_loop_gain(wall)
+    size = np.abs(gain)
+    if size.max() < 1.0:
+        return math.inf
+    if size[-1] >= 1.0:  # Two samples per oscillation: one more period is half a turn.
+        return 0.0
+    crossed = np.flatnonzero(np.diff(size >= 1.0))
+    left = np.mod(math.pi + np.angle(gain[crossed]), 2.0 * math.pi)
+    return float((left / angles[crossed]).min())
+
+
+def _calc_loop_gain(wall: SampledWall) -> tuple[np.ndarray, np.ndarray]:
+    """Returns phases per period, rad, and the loop gain of the wall's force there."""
     flow, push = wall._calc_flow(wall.period_s)
     angles = np.geomspace(1e-6, math.pi, 4000)
     z = np.exp(1j * angles)
@@ -238,4 +264,4 @@ def _calc_largest_loop_gain(wall: SampledWall) -> float:
     else:
         B = wall.wall_damping / wall.period_s * (1.0 - 1.0 / z)
         force = (wall.stiffness + B) * response[:, 0]
-    return float(np.abs(force).max())
+    return angles, force

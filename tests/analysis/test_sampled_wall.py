@@ -140,6 +140,38 @@ def test_the_largest_delay_follows_the_linear_law():
     assert calc_largest_delay(wall) == pytest.approx(law, rel=0.03)
 
 
+def test_no_delay_below_the_largest_is_unstable():
+    """All delays are tried, a quarter of a period apart, as far as the largest."""
+    limited = 0
+    for wall in make_random_walls(60):
+        wall = replace(wall, stiffness=0.6 * calc_largest_stiffness(wall))
+        delay = calc_largest_delay(wall)
+        if not 0.0 < delay < 60 * T:
+            continue
+        limited += 1
+        below = [*np.arange(0.0, delay, T / 4), delay * (1 - 1e-7)]
+        radius = [replace(wall, delay_s=d).calc_spectral_radius() for d in below]
+        assert max(radius) < 1.0, wall
+        above = replace(wall, delay_s=delay * (1 + 1e-7))
+        assert above.calc_spectral_radius() > 1.0, wall
+    assert limited > 20
+
+
+def test_a_delay_of_many_periods_is_found_by_few_matrices(monkeypatch):
+    wall = SampledWall(0.1, 0.5, 1.25e-4, stiffness=20.0, wall_damping=0.2)
+    tried = []
+    calc = SampledWall.calc_spectral_radius
+    monkeypatch.setattr(
+        SampledWall,
+        "calc_spectral_radius",
+        lambda wall: tried.append(wall.delay_s) or calc(wall),
+    )
+    delay = calc_largest_delay(wall)
+    assert delay > 200 * wall.period_s
+    assert delay == pytest.approx(calc_stable_delay(20.0, 0.5, 0.2, 1.25e-4), rel=0.1)
+    assert len(tried) < 30
+
+
 def test_a_stiff_wall_bears_no_delay_and_a_soft_one_in_a_hand_any():
     assert calc_largest_delay(make_wall(0.5, 0.0, 0, {}, stiffness=2000.0)) == 0.0
     soft = make_wall(0.5, 0.0, 0, HAND, stiffness=20.0)
