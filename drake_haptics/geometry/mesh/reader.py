@@ -94,6 +94,11 @@ def _read_npz(path: Path) -> RawMesh:
 def _read_with_trimesh(path: Path) -> RawMesh:
     import trimesh  # takes half a second
 
+    try:
+        path.name.encode()  # trimesh does so, too
+    except UnicodeEncodeError as error:
+        shown = os.fsencode(path).decode(errors="backslashreplace")
+        raise MeshError(f"{shown}: its name is not UTF-8: rename the file") from error
     formats = trimesh.available_formats()
     if path.suffix.lower().lstrip(".") not in formats:
         raise MeshError(

@@ -1,6 +1,7 @@
 """Mesh intake: what is refused, what is repaired, and that nothing is silent."""
 
 import logging
+import os
 from itertools import pairwise
 
 import mesh_samples
@@ -48,6 +49,14 @@ def test_unusable_arrays_are_refused_by_name(vertices, triangles, message):
     with pytest.raises(MeshError, match=message) as refusal:
         Mesh.from_arrays(vertices, triangles, name="the part")
     assert str(refusal.value).startswith("the part: ")
+
+
+def test_a_file_name_that_is_not_utf_8_is_refused(tmp_path):
+    path = tmp_path / os.fsdecode(b"w\xfcrfel.obj")
+    trimesh.creation.box().export(tmp_path / "box.obj")
+    (tmp_path / "box.obj").rename(path)
+    with pytest.raises(MeshError, match=r"/w\\xfcrfel\.obj: its name is not UTF-8"):
+        load_mesh(path)
 
 
 def test_unusable_files_are_refused_by_name(tmp_path):
