@@ -134,13 +134,16 @@ def _silent_trimesh() -> Iterator[None]:
 def _describe_missing_triangles(path: Path) -> str:
     """Returns why trimesh finds no triangles in a file.
 
-    It treats an incomplete STL file as one without facets.
+    It treats an incomplete STL file, and a binary OBJ file, as one without facets.
     """
-    if path.suffix.lower() != ".stl":
-        return "has no triangles; point clouds and curves have no surface"
     data = path.read_bytes()
     # The number of triangles in a binary file has a zero byte below 16 million.
-    if b"\0" not in data[:_TEXT]:
+    is_text = b"\0" not in data[:_TEXT]
+    if path.suffix.lower() == ".obj" and not is_text:
+        return "is a binary file, and no OBJ: its content is not what its name says"
+    if path.suffix.lower() != ".stl":
+        return "has no triangles; point clouds and curves have no surface"
+    if is_text:
         if not data.lstrip().lower().startswith(b"solid"):
             return "is a text file, and no STL: its content is not what its name says"
         if b"endsolid" not in data.lower():

@@ -68,6 +68,7 @@ def test_unusable_files_are_refused_by_name(tmp_path):
         assert name in str(refusal.value)
 
     refuse("empty.stl", b"", "is empty")
+    refuse("noise.obj", bytes(range(256)) * 3, "is a binary file, and no OBJ")
     refuse("noise.stl", bytes(range(256)) * 3, "is cut off")
     refuse("noise.ply", b"ply\nformat nonsense\n", "cannot be read|no triangles")
     refuse("noise.glb", b"glTF" + bytes(40), "cannot be read")
