@@ -134,8 +134,20 @@ class MeshReport:
     def verdict(self) -> str:
         """One sentence that says how the mesh can be used."""
         if self.solids == self.components:
-            plural = "one solid" if self.solids == 1 else count(self.solids, "solid")
-            return f"Usable as {plural}: closed and wound outward."
+            cavities = sum(f.count for f in self.findings if f.code == "cavities")
+            solids = self.solids - cavities
+            plural = "one solid" if solids == 1 else count(solids, "solid")
+            if cavities == 0:
+                return f"Usable as {plural}: closed and wound outward."
+            hollow, walls = (
+                ("a cavity", "its wall")
+                if cavities == 1
+                else (count(cavities, "cavity", "cavities"), "their walls")
+            )
+            return (
+                f"Usable as {plural} with {hollow}: closed and wound outward, {walls}"
+                " inward, as is right."
+            )
         if self.solids == 0:
             return (
                 "Usable as an open surface: no part of it bounds a solid, so every "
