@@ -14,6 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.units import meters_per_unit
 from drake_haptics.geometry.parsing.body_shapes import (
     decompose_body,
     find_body_geometries,
@@ -51,9 +52,10 @@ def load_model_mesh(
         The mesh in the model's frame, m.
 
     Raises:
-        MeshError: The file cannot be parsed or has no collision shape, or one of them
-            cannot be used.
+        MeshError: The file cannot be parsed or has no collision shape, one of them
+            cannot be used, or the scale is not a positive finite number.
     """
+    scale = meters_per_unit(None, scale)
     path = Path(resolve_package_url(path))
     if not path.is_file():
         raise MeshError(describe_missing(path))

@@ -62,6 +62,27 @@ def test_scale_is_of_all_lengths(crank):
     np.testing.assert_allclose(half.vertices, 0.5 * full.vertices)
 
 
+@pytest.mark.parametrize("scale", [-1.0, 0.0, np.nan])
+def test_a_scale_that_turns_surfaces_inside_out_or_flat_is_refused(crank, scale):
+    with pytest.raises(MeshError, match="scale must be a positive number of meters"):
+        load_model_mesh(crank, scale=scale)
+
+
+def test_a_mirrored_mesh_keeps_its_outside(tmp_path):
+    """The roof is open, so that no closed volume tells its outside."""
+    roof = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\nf 1 2 3\nf 1 3 4\n"
+    (tmp_path / "roof.obj").write_text(roof)
+    for factors, outside in (("1 1 1", 1), ("-1 1 1", 1), ("1 1 -1", -1)):
+        shape = f'<mesh filename="roof.obj" scale="{factors}"/>'
+        (tmp_path / "roof.urdf").write_text(
+            '<robot name="r"><link name="l"><collision><geometry>'
+            f"{shape}</geometry></collision></link></robot>"
+        )
+        mesh = load_model_mesh(tmp_path / "roof.urdf")
+        a, b, c = np.swapaxes(mesh.vertices[mesh.triangles], 0, 1)
+        assert (outside * np.cross(b - a, c - a)[:, 2] > 0.0).all(), factors
+
+
 def test_what_cannot_be_used_is_said(tmp_path):
     with pytest.raises(MeshError, match="no such file"):
         load_model_mesh(tmp_path / "absent.urdf")
