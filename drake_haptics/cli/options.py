@@ -86,7 +86,10 @@ def read_mesh(
     Raises:
         HapticsError: An option of the command would overwrite the file.
         drake_haptics.common.errors.MeshError: The mesh cannot be used.
+        click.UsageError: Both unit and scale are given.
     """
+    if unit is not None and scale is not None:
+        raise click.UsageError("--unit and --scale exclude each other: give one")
     refuse_overwriting([file])
     mesh = load_mesh(file, unit=unit, scale=scale)
     return mesh if max_triangles is None else decimate(mesh, max_triangles)

@@ -55,6 +55,7 @@ def test_check_writes_json(l_file, tmp_path):
     ("words", "code", "says"),
     [
         (["check", "L", "--unit", "x"], 2, "'--unit': 'x'"),
+        (["check", "L", "--unit", "mm", "--scale", "1"], 2, "exclude each other"),
         (["check", "L", "--scale", "-1"], 2, "'--scale': -1"),
         (["check"], 2, "MESH"),
         (["decompose", "L", "--method", "cubes"], 2, "cubes"),
