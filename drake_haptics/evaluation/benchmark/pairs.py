@@ -111,14 +111,14 @@ def make_presses(pair: PairShape, count: int) -> list[np.ndarray]:
 
 def _press(pair: PairShape, rng: np.random.Generator) -> np.ndarray:
     way_W, axis_W = (unit(rng.normal(size=3)) for _ in range(2))
-    R_deep = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
+    R_deep = rotation(unit(rng.normal(size=3)), -rng.uniform(0, 2 * np.pi))
     touch_m = _touching_offset(pair, R_deep, way_W)
     stroke_m = 2 * DEPTH_SHARE * touch_m
     seconds = np.pi * stroke_m / MAX_SPEED_M_S
     phase = 2 * np.pi * np.arange(0, seconds, 1 / RATE_HZ) / seconds
     offset_m = (1 - DEPTH_SHARE) * touch_m + stroke_m * (1 + np.cos(phase)) / 2
-    # The integral of (1 + cos 2·phase) · 1 rad/s, zero at the deepest point.
-    turn_rad = (phase - np.pi + np.sin(2 * phase) / 2) * seconds / (2 * np.pi)
+    # The integral of -(1 + cos 2·phase) · 1 rad/s, zero at the deepest point.
+    turn_rad = (np.pi - phase - np.sin(2 * phase) / 2) * seconds / (2 * np.pi)
     X_WA = np.tile(np.eye(4), (len(phase), 1, 1))
     for X, offset, angle in zip(X_WA, offset_m, turn_rad, strict=True):
         X[:3, :3] = rotation(axis_W, angle) @ R_deep
@@ -153,5 +153,5 @@ def unit(v: np.ndarray) -> np.ndarray:
 
 def rotation(axis: np.ndarray, angle_rad: float) -> np.ndarray:
     """Returns the (3, 3) rotation about a unit axis (3,) (Rodrigues)."""
-    K = np.cross(np.eye(3), -axis)
+    K = np.cross(np.eye(3), axis)
     return np.eye(3) + np.sin(angle_rad) * K + (1 - np.cos(angle_rad)) * K @ K

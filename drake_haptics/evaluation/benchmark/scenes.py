@@ -93,7 +93,7 @@ def _touch(
     search: SceneTracker,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    R_WT = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
+    R_WT = rotation(unit(rng.normal(size=3)), -rng.uniform(0, 2 * np.pi))
     way_W = unit(rng.normal(size=3))
     side_W = unit(np.cross(way_W, rng.normal(size=3)))
     # A random point of the tool approaches a random point of the target.
@@ -108,7 +108,7 @@ def _touch(
     sway = np.sin(phase)
     X_WT = np.tile(np.eye(4), (len(phase), 1, 1))
     for X, along, s in zip(X_WT, along_m, sway, strict=True):
-        R_sway = rotation(way_W, _SWAY_RAD * s)
+        R_sway = rotation(way_W, -_SWAY_RAD * s)
         X[:3, :3] = R_sway @ R_WT
         # Swaying turns the tool about that point.
         X[:3, 3] = p_WQ + along * way_W + _SLIDE_M * s * side_W - X[:3, :3] @ p_ToolP

@@ -13,6 +13,7 @@ from drake_haptics.evaluation.benchmark.pairs import (
     SIZES,
     make_pair,
     make_presses,
+    rotation,
 )
 
 
@@ -27,6 +28,12 @@ def test_every_vertex_is_extreme(kind: str, size: int) -> None:
 def test_an_unknown_size_is_refused() -> None:
     with pytest.raises(ValueError, match="43"):
         make_pair("ball", 43)
+
+
+def test_a_rotation_turns_by_the_angle_that_it_names() -> None:
+    axis = np.array([2.0, -3.0, 6.0]) / 7.0
+    expected = Rotation.from_rotvec(0.7 * axis).as_matrix()
+    np.testing.assert_allclose(rotation(axis, 0.7), expected, atol=1e-15)
 
 
 @pytest.mark.parametrize("kind", KINDS)
