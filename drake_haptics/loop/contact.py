@@ -125,7 +125,7 @@ def add_contact_systems(
     )
     sample = advance = None
     if contact.query_rate_hz is not None:
-        check_query_rate(contact.query_rate_hz, 1.0 / period_s)
+        check_query_rate(contact.query_rate_hz, 1.0 / period_s, "1 / period_s")
         sample, advance = _add_advance(
             builder, query, tool, objects, 1.0 / contact.query_rate_hz
         )

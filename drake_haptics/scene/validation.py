@@ -181,8 +181,15 @@ def _check_contact(contact: ContactParameters) -> None:
     )
 
 
-def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
+def check_query_rate(
+    rate_hz: float, ticks_per_s: float, ticks: str = "device.rate_hz"
+) -> None:
     """Checks that the ticks between two queries are a whole number.
+
+    Args:
+        rate_hz: Rate of queries, Hz.
+        ticks_per_s: Rate of ticks, Hz.
+        ticks: Name of that rate, for the message. Defaults to the key of a scene.
 
     Raises:
         SceneError: `rate_hz` is too low, or is not `ticks_per_s` divided by a whole
@@ -195,9 +202,9 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
         f"must be at least {_LEAST_QUERY_RATE_HZ:g}, is {rate_hz:g}: a hand moves tools"
         " by millimeters in the meantime",
     )
-    ticks = ticks_per_s / rate_hz
-    nearest_hz = ticks_per_s / max(1, round(ticks))
-    _require_whole(ticks, where, rate_hz, f"({ticks_per_s:g}) divided by", nearest_hz)
+    nearest_hz = ticks_per_s / max(1, round(ticks_per_s / rate_hz))
+    rule = f"{ticks} ({ticks_per_s:g}) divided by"
+    _require_whole(ticks_per_s / rate_hz, where, rate_hz, rule, nearest_hz)
 
 
 def _require_whole(
@@ -206,7 +213,7 @@ def _require_whole(
     require(
         round(ratio) >= 1 and abs(ratio - round(ratio)) <= _RATE_SLACK * ratio,
         where,
-        f"must be device.rate_hz {rule} a whole number, is {rate_hz:g};"
+        f"must be {rule} a whole number, is {rate_hz:g};"
         f" {nearest_hz:.10g} is the nearest",
     )
 
@@ -218,7 +225,8 @@ def _check_servo_rate(scene: Scene) -> None:
     where = "device.servo_rate_hz"
     steps = rate_hz / ticks_per_s
     nearest_hz = ticks_per_s * max(1, round(steps))
-    _require_whole(steps, where, rate_hz, f"({ticks_per_s:g}) times", nearest_hz)
+    rule = f"device.rate_hz ({ticks_per_s:g}) times"
+    _require_whole(steps, where, rate_hz, rule, nearest_hz)
     require(
         round(steps) == 1 or scene.contact.law == "constraint",
         where,

@@ -12,6 +12,7 @@ from pydrake.systems.primitives import ConstantVectorSource
 from slider_device import make_device
 
 from drake_haptics import AddHapticRendering
+from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.scene.schema import (
     BrakingParameters,
@@ -62,6 +63,13 @@ def test_without_effects_there_is_only_contact():
     assert inputs(rendering) == INPUTS
     # A state of its own would be a sample of delay.
     assert rendering.CreateDefaultContext().num_total_states() == 0
+
+
+def test_a_wrong_query_rate_is_told_by_the_period_that_it_must_fit():
+    contact = replace(CONTACT, query_rate_hz=300.0)
+    says = r"must be 1 / period_s \(1000\) divided by a whole number, is 300"
+    with pytest.raises(SceneError, match=says):
+        make_scene(config=PLANTS["sampled"], contact=contact)
 
 
 @pytest.mark.parametrize(
