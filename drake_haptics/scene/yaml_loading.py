@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from pydrake.common.yaml import yaml_load_file
 
 from drake_haptics.common.errors import SceneError
 
@@ -25,18 +24,23 @@ def load_yaml(path: Path) -> Any:
             message is one line.
     """
     try:
-        data = yaml_load_file(str(path))
-        tree = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
+        loader = yaml.SafeLoader(path.read_text(encoding="utf-8"))
+        tree = loader.get_single_node()
+        _refuse_repeated_keys(path, tree)
+        data = None if tree is None else loader.construct_document(tree)
+    except SceneError:
+        raise
     except OSError as error:
         raise SceneError(
             f"{path}: cannot be opened: {error.strerror}; looked for {path.absolute()}"
         ) from error
-    except Exception as error:  # Drake passes on whatever its YAML parser raises.
+    except Exception as error:  # PyYAML passes on what constructors raise.
         reason = " ".join(str(error).split())
         if "'\\t'" in reason:
             reason += "; indent with spaces, YAML takes no tabs"
         raise SceneError(f"{path}: cannot be read as YAML: {reason}") from error
-    _refuse_repeated_keys(path, tree)
+    if isinstance(data, dict):  # As Drake does: such keys hold anchors.
+        data = {k: v for k, v in data.items() if not str(k).startswith("_")}
     return data
 
 

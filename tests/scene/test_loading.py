@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
@@ -53,6 +54,18 @@ def load(tmp_path, text):
     for name in ("peg.obj", "arm.sdf"):
         (tmp_path / name).touch()
     return load_scene(path)
+
+
+def test_a_scene_is_parsed_once_for_its_checks_and_once_by_drake(tmp_path, monkeypatch):
+    parsed = []
+    parse = yaml.SafeLoader.get_single_node
+    monkeypatch.setattr(
+        yaml.SafeLoader,
+        "get_single_node",
+        lambda loader: parsed.append(loader) or parse(loader),
+    )
+    load(tmp_path, GOOD)
+    assert len(parsed) == 2
 
 
 def test_a_scene_is_read_with_defaults_for_the_rest(tmp_path):
