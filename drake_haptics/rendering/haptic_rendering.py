@@ -81,8 +81,8 @@ class HapticRendering(Diagram):
 
     Under the penalty law, a step of a tool that is faster than `skin_speed_m_per_s` may
     carry it from beyond the tolerance into a shape. Contact is still found, but as deep
-    as that step has taken the tool. The first contact that is deeper than ten
-    tolerances causes a `drake_haptics.scene.validation.SceneWarning`.
+    as that step has taken the tool. Each contact that is deeper than ten
+    tolerances causes one `drake_haptics.scene.validation.SceneWarning`.
     """
 
     def __init__(

@@ -119,16 +119,16 @@ class ContactClustering(DifferentiableSystem):
             tolerance_m: Distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
             enable_load_shedding: Whether the loop sheds load, which adds a port.
-            warns_deep: Whether to warn of the first contact that is deeper than ten
-                tolerances. `run` warns at the end instead, because writing may delay a
-                loop that a hand holds.
+            warns_deep: Whether to warn of each contact that is deeper than ten
+                tolerances, once. `run` warns at the end instead, because writing may
+                delay a loop that a hand holds.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is
                 not positive, missing, or given where there is no octree.
         """
         super().__init__()
-        self._warns_deep = warns_deep
+        self._warns_deep, self._warned = warns_deep, False
         rule = ClusteringRule(method, tolerance_m, delta_m)
         self._rule = self.DeclareAbstractParameter(Value[object](rule))
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
@@ -195,16 +195,18 @@ class ContactClustering(DifferentiableSystem):
     def warn_of_depth(
         self, context: Context, least_distance_m: float, tolerance_m: float
     ) -> None:
-        """Warns of a contact that is deeper than ten tolerances, the first time.
+        """Warns of a contact that is deeper than ten tolerances, once until it ends.
 
         Args:
             context: Context of any system of the same diagram, for the time.
             least_distance_m: Signed distance of the deepest contact, m.
             tolerance_m: Distance below which contacts push, m.
         """
+        if least_distance_m > tolerance_m:
+            self._warned = False
         warning = make_depth_warning(-least_distance_m, tolerance_m)
-        if self._warns_deep and warning:
-            self._warns_deep = False
+        if warning and not self._warned:
+            self._warned = True
             rendering = self.GetSystemPathname().split("::")[-2]
             sentence = f"{rendering!r} at {context.get_time():.4g} s: {warning}"
             # Drake calls this, so the user's line is not known.

@@ -161,5 +161,25 @@ def test_a_deep_contact_is_warned_of_once_either_way(monkeypatch, make) -> None:
         assert "12 times contact.tolerance_m" in str(told[0].message)
 
 
+@pytest.mark.parametrize("make", [make_scene, make_held])
+def test_a_deep_contact_is_warned_of_again_after_it_ended(monkeypatch, make) -> None:
+    deep = RigidTransform([0.0, 0.0, HALF - 12.0 * CONTACT.tolerance_m])
+    touching = RigidTransform([0.0, 0.0, HALF + 0.5 * CONTACT.tolerance_m])
+    away = RigidTransform([0.0, 0.0, 3.0 * HALF])
+    for scene, rendering in make_both(monkeypatch, make, deep):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            for X_WT in (deep, touching, deep, away, deep):
+                tool = scene.plant.GetBodyByName("tool")
+                scene.plant.SetFloatingBaseBodyPoseInWorldFrame(
+                    scene.context, tool, X_WT
+                )
+                scene.simulator.Initialize()
+                scene.simulator.AdvanceTo(scene.root.get_time() + 1e-3)
+                scene.read(rendering, "clusters")
+        told = [w for w in caught if issubclass(w.category, SceneWarning)]
+        assert len(told) == 2
+
+
 def test_an_object_that_moves_leaves_the_chain_out() -> None:
     assert not has_chain(make_scene(cart=True)[1])
