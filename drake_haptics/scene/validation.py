@@ -36,6 +36,8 @@ _CLUSTERINGS = ("shared", "octree")
 _DEPTHS = ("tracked", "global")
 # Relative error within which a ratio of two rates counts as whole.
 _RATE_SLACK = 1e-9
+# Farther away, numbers are more than 0.1 µm apart.
+_FARTHEST_M = 1e9
 # A hand at 0.1 m/s moves 5 mm per query, farther than contacts are searched for.
 _LEAST_QUERY_RATE_HZ = 20.0
 # Depth, in tolerances, at which the force is eleven times that at the surface. The
@@ -321,9 +323,14 @@ def _check_path(path: HandPathParameters) -> None:
 
 
 def _check_pose(pose: Any, where: str) -> None:
-    """Checks the lengths of a position and a rotation."""
+    """Checks the lengths of a position and a rotation, and how far the position is."""
     for key in ("position_m", "rpy_deg"):
         require(len(getattr(pose, key)) == 3, f"{where}.{key}", "needs three numbers")
+    require(
+        all(abs(value) <= _FARTHEST_M for value in pose.position_m),
+        f"{where}.position_m",
+        f"must be within {_FARTHEST_M:g} m, is {pose.position_m}",
+    )
 
 
 def require_all_positive(part: Any, where: str, keys: list[str]) -> None:
