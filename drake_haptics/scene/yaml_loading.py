@@ -39,7 +39,7 @@ def load_yaml(path: Path) -> Any:
         if "'\\t'" in reason:
             reason += "; indent with spaces, YAML takes no tabs"
         raise SceneError(f"{path}: cannot be read as YAML: {reason}") from error
-    if isinstance(data, dict):  # As Drake does: such keys hold anchors.
+    if isinstance(data, dict):  # Drake skips such keys too: they hold anchors.
         data = {k: v for k, v in data.items() if not str(k).startswith("_")}
     return data
 

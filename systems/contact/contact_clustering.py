@@ -119,9 +119,9 @@ class ContactClustering(DifferentiableSystem):
             tolerance_m: Distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
             enable_load_shedding: Whether the loop sheds load, which adds a port.
-            warns_deep: Whether to warn of each contact that is deeper than ten
-                tolerances, once. `run` warns at the end instead, because writing may
-                delay a loop that a hand holds.
+            warns_deep: Whether to warn once of each contact that is deeper than ten
+                tolerances. `run` warns at the end instead, because writing may delay a
+                loop that a hand holds.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is

@@ -52,7 +52,7 @@ MESHES = {
     "cut.obj": (TRIANGLE + "f 1 2 9\n", "cannot be read"),
     "picture.jpg": ("x", "trimesh reads no format .jpg"),
     "cut.stl": ("solid cup\nfacet nor", "is cut off: a text STL"),
-    "text.stl": (TRIANGLE + "f 1 2 3\n", "is a text file, and no STL"),
+    "text.stl": (TRIANGLE + "f 1 2 3\n", "is a text file, not an STL"),
 }
 
 

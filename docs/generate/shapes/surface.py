@@ -9,8 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from drake_haptics.geometry.mesh.mesh import Mesh
-
 # Shipped coordinates are rounded to a nanometer, so that the last digit of a
 # platform's sine does not show in the files.
 _DECIMALS = 9
@@ -31,10 +29,6 @@ class Surface:
 
     vertices: np.ndarray
     triangles: np.ndarray
-
-    def to_mesh(self, name: str = "") -> Mesh:
-        """Returns the surface as a checked mesh of this name."""
-        return Mesh.from_arrays(self.vertices, self.triangles, name=name)
 
     def write_obj(self, path: Path, title: str) -> None:
         """Writes the surface as a Wavefront OBJ file.

@@ -140,12 +140,12 @@ def _describe_missing_triangles(path: Path) -> str:
     # The number of triangles in a binary file has a zero byte below 16 million.
     is_text = b"\0" not in data[:_TEXT]
     if path.suffix.lower() == ".obj" and not is_text:
-        return "is a binary file, and no OBJ: its content is not what its name says"
+        return "is a binary file, not OBJ text: its content is not what its name says"
     if path.suffix.lower() != ".stl":
         return "has no triangles; point clouds and curves have no surface"
     if is_text:
         if not data.lstrip().lower().startswith(b"solid"):
-            return "is a text file, and no STL: its content is not what its name says"
+            return "is a text file, not an STL: its content is not what its name says"
         if b"endsolid" not in data.lower():
             return (
                 "is cut off: a text STL ends with 'endsolid': export or copy it again"

@@ -139,14 +139,12 @@ class MeshReport:
             plural = "one solid" if solids == 1 else count(solids, "solid")
             if cavities == 0:
                 return f"Usable as {plural}: closed and wound outward."
-            hollow, walls = (
-                ("a cavity", "its wall")
-                if cavities == 1
-                else (count(cavities, "cavity", "cavities"), "their walls")
+            hollow = (
+                "a cavity" if cavities == 1 else count(cavities, "cavity", "cavities")
             )
             return (
-                f"Usable as {plural} with {hollow}: closed and wound outward, {walls}"
-                " inward, as is right."
+                f"Usable as {plural} with {hollow}: closed, with outer walls wound"
+                " outward and cavity walls inward."
             )
         if self.solids == 0:
             return (

@@ -68,7 +68,7 @@ def test_unusable_files_are_refused_by_name(tmp_path):
         assert name in str(refusal.value)
 
     refuse("empty.stl", b"", "is empty")
-    refuse("noise.obj", bytes(range(256)) * 3, "is a binary file, and no OBJ")
+    refuse("noise.obj", bytes(range(256)) * 3, "is a binary file, not OBJ text")
     refuse("noise.stl", bytes(range(256)) * 3, "is cut off")
     refuse("noise.ply", b"ply\nformat nonsense\n", "cannot be read|no triangles")
     refuse("noise.glb", b"glTF" + bytes(40), "cannot be read")
@@ -387,10 +387,10 @@ def test_nested_shells(first, signs, volume, cavity, code):
 def test_the_verdict_names_cavities_beside_the_solids_that_have_them():
     V, F = shells(1, -1)
     report = Mesh.from_arrays(V, F).report
-    assert report.verdict.startswith("Usable as one solid with a cavity: closed and")
-    assert "its wall inward" in report.verdict
+    assert report.verdict.startswith("Usable as one solid with a cavity: closed,")
+    assert report.verdict.endswith("cavity walls inward.")
     twice = Mesh.from_arrays(*joined((V, F), (V + 2.0, F))).report
-    assert twice.verdict.startswith("Usable as 2 solids with 2 cavities: closed and")
+    assert twice.verdict.startswith("Usable as 2 solids with 2 cavities: closed,")
 
 
 def test_a_body_in_a_cavity_is_a_body():
