@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from driver_process import COMMAND
 from struct_host import ACTIVE, IDLE
 
-PATIENCE_S = 5.0  # within which a busy machine may not have acted on a key
+PATIENCE_S = 20.0  # within which a busy machine may not have acted on a key
 
 
 def is_not_active(state):
@@ -52,7 +52,8 @@ class HostProcess:
 
         A machine that stalls for longer than a command lives leaves the device at
         fault, as it must. Before the device has left idle once, nothing is pressed: the
-        run takes it up by itself.
+        run takes it up by itself. Nor before it has spoken: what is pressed while a
+        process starts is read later, all at once.
 
         Args:
             link: Watched way to the device.
@@ -65,6 +66,7 @@ class HostProcess:
         """
         end_s = time.monotonic() + bound_s
         seen, pressed_s, was_taken_up = len(link.states), -PATIENCE_S, False
+        spoken = link.counts["to_device"]
         while time.monotonic() < end_s:
             time.sleep(0.05)
             new = link.states[seen:]
@@ -72,9 +74,14 @@ class HostProcess:
             if found := next((state for state in new if wanted(state)), None):
                 return found
             assert self.is_running, self.wait()
-            was_taken_up = was_taken_up or any(state.gate != IDLE for state in new)
-            is_late = time.monotonic() > pressed_s + PATIENCE_S
-            if was_taken_up and new and all(map(needs_enter, new)) and is_late:
+            was_taken_up = was_taken_up or (
+                link.counts["to_device"] > spoken
+                and any(state.gate != IDLE for state in new)
+            )
+            needs = bool(new) and all(map(needs_enter, new))
+            if new and not needs:
+                pressed_s = -PATIENCE_S  # what Enter was for is over
+            elif needs and was_taken_up and time.monotonic() > pressed_s + PATIENCE_S:
                 self.press_enter()
                 pressed_s = time.monotonic()
         raise AssertionError(f"not reached; the last state was {link.states[-1:]}")
