@@ -204,8 +204,9 @@ class ContactClustering(DifferentiableSystem):
         """
         if least_distance_m > tolerance_m:
             self._warned = False
-        warning = make_depth_warning(-least_distance_m, tolerance_m)
-        if warning and not self._warned:
+        if self._warned:
+            return
+        if warning := make_depth_warning(-least_distance_m, tolerance_m):
             self._warned = True
             rendering = self.GetSystemPathname().split("::")[-2]
             sentence = f"{rendering!r} at {context.get_time():.4g} s: {warning}"

@@ -378,7 +378,7 @@ class Query {
       if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
       tried = &last.n;
       const Vec3 n = pair_.X_AB.R * last.n;
-      // Most pairs are apart along it; only for others a search is ruled out.
+      // Most pairs are apart along it: the proof pays for the others only.
       if (!(GapAlong(n) < 0)) continue;
       may_find = may_find || MayFind(nullptr);
       if (!may_find) return std::nullopt;

@@ -384,15 +384,6 @@ def test_nested_shells(first, signs, volume, cavity, code):
     assert ("cavities" in codes(mesh)) is cavity
 
 
-def test_the_verdict_names_cavities_beside_the_solids_that_have_them():
-    V, F = shells(1, -1)
-    report = Mesh.from_arrays(V, F).report
-    assert report.verdict.startswith("Usable as one solid with a cavity: closed,")
-    assert report.verdict.endswith("cavity walls inward.")
-    twice = Mesh.from_arrays(*joined((V, F), (V + 2.0, F))).report
-    assert twice.verdict.startswith("Usable as 2 solids with 2 cavities: closed,")
-
-
 def test_a_body_in_a_cavity_is_a_body():
     inner = box((0.1, 0.1, 0.1), at=(0.45, 0.45, 0.45))
     V, F = joined(shells(1, -1), (inner[0], inner[1][:, ::-1]))

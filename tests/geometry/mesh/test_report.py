@@ -93,3 +93,13 @@ def test_holes_come_with_what_closes_them(count, words):
 )
 def test_length(meters, text):
     assert length(meters) == text
+
+
+def test_the_verdict_names_cavities_beside_the_solids_that_have_them():
+    inner, inward = box((0.1, 0.1, 0.1), at=(0.1, 0.1, 0.1))
+    V, F = joined(box((0.3, 0.3, 0.3)), (inner, inward[:, ::-1]))
+    verdict = Mesh.from_arrays(V, F).report.verdict
+    assert verdict.startswith("Usable as one solid with a cavity: closed,")
+    assert verdict.endswith("cavity walls inward.")
+    twice = Mesh.from_arrays(*joined((V, F), (V + 2.0, F))).report.verdict
+    assert twice.startswith("Usable as 2 solids with 2 cavities: closed,")
