@@ -95,8 +95,11 @@ class Constraint:
         solid: _core.ConvexPieces,
         q_WT: np.ndarray,
         range_m: float = SKIN_M,
+        period_s: float = PERIOD_S,
     ) -> None:
-        self._loop = ConstraintLoop(tool, [solid], q_WT, skin_m=range_m, gains=COUPLING)
+        self._loop = ConstraintLoop(
+            tool, [solid], q_WT, skin_m=range_m, gains=COUPLING, period_s=period_s
+        )
 
     def tick(self, q_WH: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Returns X_WT (7,), contact's wrench (6,) on it, the hand's force (3,)."""
@@ -111,6 +114,8 @@ class Constraint:
 
 
 LAWS: dict[str, Callable[..., Loop]] = {"penalty": Penalty, "constraint": Constraint}
+# Distance from which on a law pushes, by default, m.
+RANGE_M = {"penalty": GAINS["default"].tolerance_m, "constraint": SKIN_M}
 
 
 @dataclass
@@ -125,9 +130,11 @@ class Run:
     made_J: float  # Most that contact gave beyond what it had been given.
 
 
-def run_handle(loop: Loop, press: Press, held: int = 0) -> Run:
+def run_handle(
+    loop: Loop, press: Press, held: int = 0, period_s: float = PERIOD_S
+) -> Run:
     """Runs a press, or until the hand has been still for some ticks."""
-    script = move_handle(press)
+    script = move_handle(press, period_s)
     phase, q_WH = next(script)
     ticks: list[tuple] = []
     still = 0

@@ -14,7 +14,16 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
-from law_runs import LAWS, Place, Run, list_hollow_places, list_places, run_handle
+from law_runs import (
+    LAWS,
+    RANGE_M,
+    Constraint,
+    Place,
+    Run,
+    list_hollow_places,
+    list_places,
+    run_handle,
+)
 from page_parts import make_parser, to_markdown
 from page_stamp import show_parts
 from peg_and_hole import peg_and_hole
@@ -34,9 +43,11 @@ HELD, WATCHED = 2000, 400
 REST_M = 1e-6
 BANDS_HZ = ((10.0, 80.0), (80.0, 400.0))
 SLIDE_M_PER_S = 0.1
-# While a hand turns from pressing to sliding its damper's force changes, ticks.
+# While a hand turns from pressing to sliding its damper's force changes, ms.
 TURNING = 20
 LEAST_STEP_N = 0.1
+# Ticks in a millisecond of rigid contact, with which slides are compared.
+RIGID_TICKS = 8
 # Energy that contact may make in a press or a jab, J.
 MADE_J = {"penalty": 2e-4, "constraint": 5e-5}
 # Play of a peg on each side, m, and the tolerance or skin over it of what is fitted.
@@ -106,11 +117,37 @@ def measure_presses(
     return faults, runs
 
 
-def calc_excess_N(run: Run) -> float:
-    """Returns the largest change of a sliding hand's force beyond its own motion's."""
-    forces = run.f_hand_W[run.phases == "slide"][TURNING:]
+def measure_slides(law: str, places: Sequence[Place]) -> np.ndarray:
+    """Returns the largest steps (n, 2) of slides that met something, N.
+
+    Columns: under the law, and with rigid contact where the law begins to push.
+    """
+    found = []
+    for place in _with_progress(f"{law}: slides", places):
+        press = place.press
+        start = place.tool, place.pieces, press.q_WH(0.0, 0.0)
+        run = run_handle(LAWS[law](*start), press)
+        if not run.F_contact_W.any():
+            continue
+        period_s = PERIOD_S / RIGID_TICKS
+        rigid = Constraint(*start, RANGE_M[law], period_s)
+        exact = run_handle(rigid, press, period_s=period_s)
+        found.append([calc_step_N(run), calc_step_N(exact, RIGID_TICKS)])
+    return np.array(found)
+
+
+def calc_step_N(run: Run, ticks: int = 1) -> float:
+    """Returns the largest change of a sliding hand's force in a millisecond, N.
+
+    What the hand's own motion makes is taken off.
+
+    Args:
+        run: A slide.
+        ticks: Its ticks in a millisecond.
+    """
+    forces = run.f_hand_W[run.phases == "slide"][TURNING * ticks :]
     own_N = COUPLING.stiffness_N_per_m * SLIDE_M_PER_S * PERIOD_S
-    steps_N = np.linalg.norm(np.diff(forces, axis=0), axis=1)
+    steps_N = np.linalg.norm(forces[ticks:] - forces[:-ticks], axis=1)
     return max(0.0, float(steps_N.max()) - own_N)
 
 
@@ -195,12 +232,16 @@ def measure(law: str, points: int, solids: Sequence[str]) -> dict[str, str]:
         ("through a hollow", list(list_hollow_places(slide=True))),
         ("over shipped meshes", places("slide", steady=True)),
     ):
-        _, slides = measure_presses(law, "slide", chosen)
-        steps_N = np.array([calc_excess_N(run) for run in slides])
-        many = (steps_N > LEAST_STEP_N).sum()
-        cells[f"slide {where}: largest step of the hand's force"] = (
-            f"{steps_N.max():.2f} N, {many} of {len(steps_N)} above {LEAST_STEP_N:g} N"
-        )
+        steps_N, rigid_N = measure_slides(law, chosen).T
+        for what, found_N in (
+            ("largest step of the hand's force", steps_N),
+            ("the same beyond that of rigid contact", steps_N - rigid_N),
+        ):
+            many = (found_N > LEAST_STEP_N).sum()
+            cells[f"slide {where}: {what}"] = (
+                f"{max(0.0, found_N.max()):.2f} N, {many} of {len(found_N)} above "
+                f"{LEAST_STEP_N:g} N"
+            )
     for name, fitted in (("the default range", False), ("a fitted range", True)):
         cells[f"peg with {name}: goes in down to"] = find_least_play(law, fitted)
     cells["median time of a tick (noisy)"] = f"{np.median(took_us):.0f} µs"
@@ -215,7 +256,8 @@ WANTED = {
     "jab: lost": "0, 0, 0, 0",
     "press: most": "0.2 mJ, `constraint` 0.05 mJ",
     "jab: most": "0.2 mJ, `constraint` 0.05 mJ",
-    "slide": "0.1 N but for true edges",
+    "slide through a hollow: the": "0.1 N",
+    "slide over shipped meshes: the": "0.1 N",
     "peg with the default": "the range: 2 mm, 0.3 mm",
     "peg with a fitted": "0.02 mm",
 }

@@ -8,16 +8,18 @@ from law_runs import LAWS, list_hollow_places, list_places
 from law_table import (
     FITTED,
     HEAD,
+    LEAST_STEP_N,
     MADE_J,
     PAGE,
     PLAYS_M,
     POINTS,
     REST_M,
-    calc_excess_N,
+    calc_step_N,
     calc_tremor,
     insert_peg,
     measure_presses,
     measure_rest,
+    measure_slides,
 )
 from markdown_page import read_table
 from page_parts import read_part
@@ -57,7 +59,16 @@ def test_no_press_is_lost_gets_through_or_makes_more_energy_than_told(law, motio
 def test_a_slide_through_a_hollow_has_no_step(law):
     _, [run] = measure_presses(law, "slide", list(list_hollow_places(slide=True)))
     assert np.ptp(run.q_WT[run.phases == "slide", 4]) > 0.012
-    assert calc_excess_N(run) < 0.01
+    assert calc_step_N(run) < 0.01
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_slide_steps_where_rigid_contact_steps_too(law):
+    steps_N, rigid_N = measure_slides(
+        law, list(list_places("slide", 4, ("pen", "spoon"), steady=True))
+    ).T
+    assert steps_N.max() > LEAST_STEP_N  # over edges, or nothing is compared
+    assert (steps_N - rigid_N).max() < LEAST_STEP_N
 
 
 def test_a_peg_goes_in_where_the_range_of_the_law_is_less_than_its_play():

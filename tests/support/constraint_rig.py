@@ -38,7 +38,9 @@ class ConstraintLoop:
         skin_m: float = SKIN_M,
         gains: _core.CouplingGains = COUPLING,
         coefficient: float | None = None,
+        period_s: float = PERIOD_S,
     ) -> None:
+        self._period_s = period_s
         self.stepper = _core.ConstraintStepper(
             tool.core,
             list(solids),
@@ -46,7 +48,7 @@ class ConstraintLoop:
             tool.dynamics,
             gains,
             REST,
-            PERIOD_S,
+            period_s,
             coefficient=[] if coefficient is None else [coefficient] * len(solids),
         )
         self.anchors = np.zeros(self.stepper.num_anchors)
@@ -70,7 +72,7 @@ class ConstraintLoop:
             F_applied: Other wrenches (6,) on the tool. Defaults to none.
         """
         if V_WH is None:
-            move = (q_WH[4:] - self.q_WH[4:]) / PERIOD_S
+            move = (q_WH[4:] - self.q_WH[4:]) / self._period_s
             V_WH = np.concatenate([np.zeros(3), move])
         self.q_WH = np.array(q_WH, dtype=float)
         F = np.zeros(6) if F_applied is None else F_applied
@@ -78,7 +80,8 @@ class ConstraintLoop:
             self.q_WT, self.V_WT, self.q_WH, V_WH, F, self.anchors
         )
         self.anchors = result.friction.next_state
-        self.work_J.append(contact_wrench(result, self.q_WT[4:]) @ result.V_WT * 1e-3)
+        power_W = contact_wrench(result, self.q_WT[4:]) @ result.V_WT
+        self.work_J.append(power_W * self._period_s)
         self.q_WT, self.V_WT = result.q_WT, result.V_WT
         return result
 

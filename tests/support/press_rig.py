@@ -219,12 +219,14 @@ def run_press(
             return
 
 
-def move_handle(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
+def move_handle(
+    press: Press, period_s: float = PERIOD_S
+) -> Generator[tuple[str, np.ndarray], float, None]:
     """Yields the handle's poses: in, perhaps along the surface, hold, out, away.
 
     It is sent the coupling's force after each, N.
     """
-    step = press.speed_m_per_s * PERIOD_S
+    step = press.speed_m_per_s * period_s
     travel, slid = 0.0, 0.0
     force_N = yield "in", press.q_WH(travel, slid)
     while travel < START_M + press.stop_m and force_N < _REACHED * press.stop_N:
@@ -234,7 +236,7 @@ def move_handle(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
         while slid < 15e-3:
             slid += step
             yield "slide", press.q_WH(travel, slid)
-    for _ in range(round(HOLD_S / PERIOD_S)):
+    for _ in range(round(HOLD_S / period_s)):
         yield "hold", press.q_WH(travel, slid)
     while travel > 0:
         travel = max(0.0, travel - step)
