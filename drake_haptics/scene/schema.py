@@ -136,8 +136,8 @@ class EncoderParameters:
         step_rad: Angle of a motor after its gear per count of its encoder, six numbers,
             rad. Defaults to the preset's.
         velocity_window: Number of ticks over which counts are subtracted to estimate
-            the speed, at least 1. The speed's resolution is the step divided by the
-            window, its delay half a window.
+            the speed, from 1 to 1,000. The speed's resolution is the step divided by
+            the window, its delay half a window.
     """
 
     step_rad: list[float] | None = None
@@ -164,7 +164,7 @@ class ForceDelayParameters:
     """A delay of whole ticks on the way to the motors, on top of the hold.
 
     Attributes:
-        samples: Delay in ticks, at least 1.
+        samples: Delay in ticks, from 1 to 1,000.
     """
 
     samples: int = 1

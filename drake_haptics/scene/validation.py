@@ -38,6 +38,10 @@ _DEPTHS = ("tracked", "global")
 _RATE_SLACK = 1e-9
 # Farther away, numbers are more than 0.1 µm apart.
 _FARTHEST_M = 1e9
+# The core counts in 32 bits.
+_MOST_STEPS = 2**31 - 1
+# A second at 1 kHz. The simulated device keeps numbers for each of these ticks.
+_MOST_TICKS = 1000
 # A hand at 0.1 m/s moves 5 mm per query, farther than contacts are searched for.
 _LEAST_QUERY_RATE_HZ = 20.0
 # Depth, in tolerances, at which the force is eleven times that at the surface. The
@@ -176,11 +180,7 @@ def _check_contact(contact: ContactParameters) -> None:
         "is missing" if octree else "is only for clustering: octree",
     )
     _require_known(contact.depth, _DEPTHS, "contact.depth")
-    require(
-        contact.max_walk_steps >= 1,
-        "contact.max_walk_steps",
-        f"must be at least 1, is {contact.max_walk_steps}",
-    )
+    _require_count(contact, "contact", "max_walk_steps", _MOST_STEPS)
 
 
 def check_query_rate(
@@ -295,12 +295,12 @@ def _check_twin(twin: DeviceImperfections) -> None:
     where = "device.twin"
     if (encoder := twin.encoder) is not None:
         require_each(encoder, f"{where}.encoder", "step_rad", 6, positive=True)
-        require_all_positive(encoder, f"{where}.encoder", ["velocity_window"])
+        _require_count(encoder, f"{where}.encoder", "velocity_window", _MOST_TICKS)
     if (friction := twin.friction) is not None:
         for key in ("coulomb_Nm", "viscous_Nms_per_rad"):
             require_each(friction, f"{where}.friction", key, 6, positive=False)
     if (delay := twin.delay) is not None:
-        require_all_positive(delay, f"{where}.delay", ["samples"])
+        _require_count(delay, f"{where}.delay", "samples", _MOST_TICKS)
     if (saturation := twin.saturation) is not None:
         require_each(
             saturation, f"{where}.saturation", "peak_torque_Nm", 6, positive=True
@@ -353,6 +353,16 @@ def require_none_negative(part: Any, where: str, keys: list[str]) -> None:
             join_key(where, key),
             f"must not be negative, is {value}",
         )
+
+
+def _require_count(part: Any, where: str, key: str, most: int) -> None:
+    """Raises SceneError unless a whole number is from 1 to `most`."""
+    value = getattr(part, key)
+    require(
+        1 <= value <= most,
+        join_key(where, key),
+        f"must be at least 1 and at most {most:,}, is {value}",
+    )
 
 
 def require_each(

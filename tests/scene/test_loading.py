@@ -212,6 +212,11 @@ def test_a_pose_is_drakes():
         ("hand:", "contact: {max_walk_steps: 1.5}\nhand:", r"expected a whole number"),
         (
             "hand:",
+            "contact: {max_walk_steps: 1000000000000}\nhand:",
+            r"max_walk_steps must be at least 1 and at most 2,147,483,647, is 1000",
+        ),
+        (
+            "hand:",
             "contact: {query_rate_hz: 0}\nhand:",
             r"at least 20, is 0",
         ),
