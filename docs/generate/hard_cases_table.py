@@ -69,7 +69,7 @@ def main() -> None:
             wrong[depth] += scores[depth].wrong
             for complaint in scores[depth].complaints:
                 print(f"  {depth}: {complaint}", file=sys.stderr)
-    text = f"{describe_ours(wrong, poses)}\n{to_markdown(rows)}"
+    text = f"{describe_ours(wrong, poses)}\n{to_markdown(rows, numbers=len(HEAD) - 1)}"
     show_parts(PAGE, {PART: text}, __file__, args.write)
 
 

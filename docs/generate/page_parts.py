@@ -8,10 +8,16 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 
-def to_markdown(rows: Iterable[Sequence[str]]) -> str:
-    """Returns rows as a table of Markdown, the first one its head."""
+def to_markdown(rows: Iterable[Sequence[str]], numbers: int = 0) -> str:
+    """Returns rows as a table of Markdown, the first one its head.
+
+    Args:
+        rows: Cells of each row.
+        numbers: The last columns, so many, hold numbers and are aligned right.
+    """
     lines = ["| " + " | ".join(cells) + " |" for cells in rows]
-    lines.insert(1, "|" + "---|" * (lines[0].count("|") - 1))
+    texts = lines[0].count("|") - 1 - numbers
+    lines.insert(1, "|" + "---|" * texts + "--:|" * numbers)
     return "\n".join(lines) + "\n"
 
 

@@ -6,7 +6,7 @@ import re
 
 import pytest
 from hard_cases import HARD_CASES
-from hard_cases_table import LIBRARIES, PAGE, PART
+from hard_cases_table import HEAD, LIBRARIES, PAGE, PART
 from page_parts import read_part
 from pair_score import score_case
 
@@ -20,6 +20,9 @@ def test_every_answer_is_right(case: str) -> None:
         assert score.wrong == 0, (name, score.complaints)
 
 
-def test_the_documented_table_has_each_case_once() -> None:
+def test_the_documented_table_has_each_case_once_with_its_numbers_on_the_right() -> (
+    None
+):
     table = read_part(PAGE.read_text(encoding="utf-8"), PART)
+    assert f"\n|---|{'--:|' * (len(HEAD) - 1)}\n" in table
     assert re.findall(r"^\| (.*?) \|", table, re.M)[1:] == list(HARD_CASES)
