@@ -25,7 +25,7 @@ from drake_haptics.cli.options import (
     write_json,
 )
 from drake_haptics.common.errors import HapticsError
-from drake_haptics.common.one_line import count
+from drake_haptics.common.one_line import count, depth
 from drake_haptics.tick_log.csv_export import write_csv
 from drake_haptics.tick_log.log_diff import LogDiff, compare_logs
 from drake_haptics.tick_log.log_format import find_changed_meshes
@@ -65,11 +65,6 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
         console.print(f"  and {further} more; --json has all", style="dim")
     if not diff.same_meshes:
         console.print("The meshes differ.", style="dim")
-    if diff.is_bit_equal:
-        console.print(
-            f"All {count(diff.ticks, 'tick')} are [bold]equal to the last bit[/]."
-        )
-        return
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("quantity", no_wrap=True)
     for heading in ["ticks", "first at s", "largest", "at s", "rms", ""]:
@@ -86,6 +81,13 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
             f"{quantity.rms:.3g}",
             quantity.unit,
         )
+    if not table.row_count:
+        of_both = "" if diff.is_bit_equal else "common "
+        console.print(
+            f"All {count(diff.ticks, f'{of_both}tick')} are"
+            " [bold]equal to the last bit[/]."
+        )
+        return
     console.print(f"Of {count(diff.ticks, 'tick')} differ:")
     console.print(table)
     equal = [quantity.name for quantity in diff.quantities if not quantity.differing]
@@ -130,7 +132,7 @@ def _print_summary(file: Path, summary: LogSummary) -> None:
         "largest",
         f"force {summary.max_force_N:.2f} N, torque"
         f" {1e3 * summary.max_torque_Nm:.0f} mN·m, penetration"
-        f" {1e3 * summary.max_penetration_m:.3f} mm,"
+        f" {depth(summary.max_penetration_m)},"
         f" {count(summary.max_contacts, 'contact')}",
     )
     table.add_row("device limit", f"{count(summary.limited_ticks, 'tick')} at it")

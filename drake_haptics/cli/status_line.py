@@ -14,7 +14,7 @@ from rich.table import Table
 
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.cockpit.handle_holder import SoftStartDevice
-from drake_haptics.common.one_line import count
+from drake_haptics.common.one_line import count, depth
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import (
     DeviceBackend,
@@ -147,11 +147,11 @@ class StatusLine(LiveLine):
         # A scene that begins again is at an earlier time.
         run_s, self._before_s = max(0.0, time_s - self._before_s), time_s
         backend = self._haptic.backend
-        force, depth, contacts = self._describe_touch(self._context)
+        force, how_deep, contacts = self._describe_touch(self._context)
         relief = self._describe_relief(self._context)
         if backend is None or self._pace is None:
             speed = f"{run_s / passed_s:5.2f} x real time"
-            parts = [speed, force, depth, *relief, contacts]
+            parts = [speed, force, how_deep, *relief, contacts]
         else:
             reading = backend.read()
             if reading is None or reading.gate != GateState.ACTIVE:
@@ -163,7 +163,7 @@ class StatusLine(LiveLine):
             parts = [
                 self._describe_device(reading, passed_s),
                 force,
-                depth,
+                how_deep,
                 *relief,
                 contacts,
                 f"{ticks / passed_s:.0f} Hz",
@@ -199,11 +199,11 @@ class StatusLine(LiveLine):
         clusters = pushing.Eval(pushing.get_system().GetMyContextFromRoot(context))
         device = loop.device.GetMyContextFromRoot(context)
         F_Ho_W_rendered = loop.device.GetOutputPort("F_Ho_W_rendered").Eval(device)
-        deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
+        deepest_m = max(0.0, -contacts.distance.min(initial=0.0))
         return (
             f"[bold]{np.linalg.norm(F_Ho_W_rendered[3:]):4.1f} N[/]"
             f" {1e3 * np.linalg.norm(F_Ho_W_rendered[:3]):4.0f} mN·m",
-            f"{deepest_mm:4.2f} mm deep",
+            f"{depth(deepest_m, 2)} deep",
             f"{count(len(contacts), 'contact')}, {count(len(clusters), 'cluster')}",
         )
 
@@ -234,7 +234,7 @@ def make_summary(figures: dict[str, Any]) -> Table:
         "largest commanded" if figures.get("device") else "largest",
         f"force {figures['max_force_N']:.2f} N,"
         f" torque {1e3 * figures['max_torque_Nm']:.0f} mN·m,"
-        f" penetration {1e3 * figures['max_penetration_m']:.3f} mm"
+        f" penetration {depth(figures['max_penetration_m'])}"
         f"{_explain_near_force(figures)}",
     )
     if any(figures["shed_ticks"].values()):
@@ -267,9 +267,7 @@ def _explain_near_force(figures: dict[str, Any]) -> str:
     key = "contact.skin_m" if is_constraint else "contact.tolerance_m"
     if distance_m is None or distance_m < 0.0 or figures["max_force_N"] == 0.0:
         return ""
-    return (
-        f"; the surfaces came within {1e3 * distance_m:.3f} mm: force begins at {key}"
-    )
+    return f"; the surfaces came within {depth(distance_m)}: force begins at {key}"
 
 
 def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:

@@ -64,3 +64,10 @@ def _items(value: tuple[Any, ...] | list[Any]) -> str:
         return f"({', '.join(map(brief, value))})"
     kinds = {type(item).__name__ for item in value}
     return f"{len(value)} × {kinds.pop() if len(kinds) == 1 else 'items'}"
+
+
+def depth(meters: float, digits: int = 3) -> str:
+    """Writes a depth or a gap in mm with so many decimals, from a meter on in m."""
+    if meters < 1.0:
+        return f"{1e3 * meters:.{digits}f} mm"
+    return f"{meters:,.{digits}f} m"

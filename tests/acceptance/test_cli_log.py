@@ -150,6 +150,9 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
     assert answer.exit_code == 0
     assert "Warning" in answer.stderr
     assert "only in the first log" in answer.stdout
+    # What both have is equal: no table without a row says that it differs.
+    assert "common ticks are equal to the last bit." in answer.stdout
+    assert "differ" not in answer.stdout
     broken.write_bytes(data[: len(data) // 3])
     answer = invoke("log", "csv", broken, "--out", tmp_path / "broken.csv")
     assert answer.exit_code == 0

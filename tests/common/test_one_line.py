@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from drake_haptics.common.one_line import brief, count, one_line
+from drake_haptics.common.one_line import brief, count, depth, one_line
 
 
 class Color(Enum):
@@ -59,3 +59,9 @@ def test_other_objects_are_named_by_their_class() -> None:
 
 def test_one_is_no_plural() -> None:
     assert [count(n, "piece") for n in (0, 1, 2)] == ["0 pieces", "1 piece", "2 pieces"]
+
+
+def test_a_depth_of_meters_is_not_told_in_millimeters() -> None:
+    told = [depth(meters) for meters in (0.0, 0.0123456, 0.9, 10.971341, 12345.6)]
+    assert told == ["0.000 mm", "12.346 mm", "900.000 mm", "10.971 m", "12,345.600 m"]
+    assert depth(0.0123456, 2) == "12.35 mm"
