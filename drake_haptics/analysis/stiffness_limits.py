@@ -221,4 +221,4 @@ def format_limit(value: float) -> str:
     if math.isinf(value):
         return "none found"
     # Seven, so that no limit of interest is written with an exponent.
-    return f"{float(f'{value:.5g}'):.7g}" if value > 0.0 else "none is stable"
+    return f"{float(f'{value:.5g}'):,.7g}" if value > 0.0 else "none is stable"

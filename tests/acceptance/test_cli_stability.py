@@ -66,10 +66,10 @@ def test_the_terminal_shows_a_table_of_one_line_each(invoke, sample):
     assert time_s == 1.5 and settings["map_size"] == 7 and settings["store"] is None
     lines = [line.split() for line in result.stdout.splitlines()]
     # One axis and the formula are of a rigid wall.
-    assert ["translation,", "contact,", "N/m", "800", "249070", "249070", "–",
+    assert ["translation,", "contact,", "N/m", "800", "249,070", "249,070", "–",
             "–"] in lines  # fmt: skip
-    assert ["translation,", "wall,", "N/m", "800", "16744", "16744", "15863",
-            "15748"] in lines  # fmt: skip
+    assert ["translation,", "wall,", "N/m", "800", "16,744", "16,744", "15,863",
+            "15,748"] in lines  # fmt: skip
     assert "what grows first: 56.1 Hz; mostly elbow_joint_w" in " ".join(
         result.stdout.split()
     )

@@ -48,7 +48,7 @@ def write(stability, folder, name="a_scene"):
 def test_a_stable_and_passive_scene(sample):
     assert describe_verdict(sample) == (
         "Stable in a firm grip and with no added delay. The limit of the coupling's"
-        " stiffness of translation is 16744 N/m against a rigid wall; the"
+        " stiffness of translation is 16,744 N/m against a rigid wall; the"
         " scene has 800 N/m, a margin of 20.9. Passive: no hand can make the device"
         " vibrate."
     )
@@ -142,7 +142,7 @@ def test_firmer_contacts_that_do_not_rest_are_told(sample):
 def test_what_does_not_rest_stands_below_the_picture(sample, tmp_path):
     page = write(replace(sample, restless_s=(1.557,)), tmp_path)
     order = [
-        "is 16744 N/m against a rigid wall",
+        "is 16,744 N/m against a rigid wall",
         "<h2>Margins",
         "<img",
         "does not come to",
@@ -175,7 +175,7 @@ def test_the_page_has_the_figures(sample, tmp_path):
         shown = ["stiffness", "eigenvalue", "simulated"]
         if limit["against"] == "a rigid wall":
             shown += ["one_axis", "formula"]
-        figures += [f"<td>{limit[name]:.7g}</td>" for name in shown]
+        figures += [f"<td>{limit[name]:,.7g}</td>" for name in shown]
         figures += [f"{limit['gain_margin']:.3g} times", limit["limited_by"]]
     figures += [mode.describe() for mode in sample.modes[:12]]
     assert [figure for figure in figures if figure not in page] == []
