@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterator
+from functools import cache, partial
 from itertools import product
 
 import numpy as np
@@ -57,7 +57,7 @@ def _scene(
     )
 
 
-def _on_fifty_pieces(tool: str, gains: str, tilt_rad: float) -> WalkScene:
+def _on_fifty_pieces(tool: str, tilt_rad: float, gains: str) -> WalkScene:
     """Returns a scene anywhere on the cut face, well inside its rim."""
 
     def draw_home(rng: np.random.Generator) -> Home:
@@ -74,7 +74,7 @@ def _on_fifty_pieces(tool: str, gains: str, tilt_rad: float) -> WalkScene:
     )
 
 
-def _box_through_flush() -> WalkScene:
+def _box_through_flush(gains: str) -> WalkScene:
     """A box that rocks through flush on a face of one piece."""
 
     def draw_home(rng: np.random.Generator) -> Home:
@@ -82,10 +82,10 @@ def _box_through_flush() -> WalkScene:
 
     plate = box([0.1, 0.1, 0.02], [0, 0, -0.01])
     tool = make_slide_tools()["box"]
-    return _scene("box through flush", tool, plate, "sinking", draw_home, 0.01)
+    return _scene("box through flush", tool, plate, gains, draw_home, 0.01)
 
 
-def _prism_on_plane() -> WalkScene:
+def _prism_on_plane(gains: str) -> WalkScene:
     """A prism of 16 sides that rolls."""
     turn = 2 * np.pi * np.arange(16) / 16
     rim = 0.01 * np.stack([np.cos(turn), 0 * turn, np.sin(turn)], axis=1)
@@ -97,10 +97,10 @@ def _prism_on_plane() -> WalkScene:
         return _home([0, 0, 0.01], _tilted(rng, 0.02) * roll)
 
     plate = box([0.2, 0.2, 0.02], [0, 0, -0.01])
-    return _scene("prism on plane", prism, plate, "sinking", draw_home, 0.4)
+    return _scene("prism on plane", prism, plate, gains, draw_home, 0.4)
 
 
-def _ball_over_edge() -> WalkScene:
+def _ball_over_edge(gains: str) -> WalkScene:
     """A ball on a convex right-angled edge."""
     block = box([0.04, 0.04, 0.04], [-0.02, 0, -0.02])
 
@@ -110,10 +110,10 @@ def _ball_over_edge() -> WalkScene:
         return _home(p, Rotation.random(random_state=rng.integers(1 << 31)), push)
 
     ball = make_slide_tools()["ball"]
-    return _scene("ball over edge", ball, block, "sinking", draw_home, 0.5)
+    return _scene("ball over edge", ball, block, gains, draw_home, 0.5)
 
 
-def _legs_on_legs() -> WalkScene:
+def _legs_on_legs(gains: str) -> WalkScene:
     """Two plates on four legs each, one upside down below the other."""
     size = 4e-3
     top = set(product(range(7), range(4), (1,)))
@@ -133,13 +133,13 @@ def _legs_on_legs() -> WalkScene:
         "legs on legs",
         decompose(tool, cache=False).core,
         decompose(solid, cache=False).core,
-        "sinking",
+        gains,
         draw_home,
         0.02,
     )
 
 
-def _peg_in_hole() -> WalkScene:
+def _peg_in_hole(gains: str) -> WalkScene:
     """A square peg in a square hole, 0.1 mm wider on each side."""
     cells = set(product(range(3), range(3), (0,))) - {(1, 1, 0)}
     block = cell_mesh(cells, 0.01)
@@ -153,10 +153,10 @@ def _peg_in_hole() -> WalkScene:
         )
 
     solid = decompose(centered, cache=False).core
-    return _scene("peg in hole", peg, solid, "sinking", draw_home, 0.01)
+    return _scene("peg in hole", peg, solid, gains, draw_home, 0.01)
 
 
-def _scattered() -> WalkScene:
+def _scattered(gains: str) -> WalkScene:
     """Tips in slabs of many directions, some alike: contacts that only ever glide."""
     rng = np.random.default_rng(0)
     slab = box([0.03, 0.03, 0.01], [0, 0, -0.005]).vertices
@@ -180,13 +180,13 @@ def _scattered() -> WalkScene:
         "scattered tips",
         join_hulls(*tips),
         join_hulls(*slabs),
-        "sinking",
+        gains,
         draw_home,
         2e-3,
     )
 
 
-def _shipped(tool: str, solid: str) -> WalkScene:
+def _shipped(tool: str, solid: str, gains: str) -> WalkScene:
     """A shipped tool on its object, pressed at random points of it."""
     mesh = load_mesh(MODELS / f"{solid}.obj", scale=1.0)
     held = make_tool(load_mesh(MODELS / f"{tool}.obj", scale=1.0), _PUSHES[tool])
@@ -199,7 +199,7 @@ def _shipped(tool: str, solid: str) -> WalkScene:
         return Home(X, press.push_W)
 
     core = decompose(mesh).core
-    return _scene(f"{tool} on {solid}", held.core, core, "soft", draw_home, 0.1)
+    return _scene(f"{tool} on {solid}", held.core, core, gains, draw_home, 0.1)
 
 
 _PUSHES = {
@@ -209,23 +209,38 @@ _PUSHES = {
     "pen": [[0, 0, -1]],
 }
 
-SCENES: dict[str, Callable[[], WalkScene]] = {
-    "box": lambda: _on_fifty_pieces("box", "default", 0.01),
-    "box-sinking": lambda: _on_fifty_pieces("box", "sinking", 0.01),
-    "edge": lambda: _on_fifty_pieces("edge", "sinking", 0.01),
-    "spike": lambda: _on_fifty_pieces("spike", "sinking", 0.05),
-    "ball": lambda: _on_fifty_pieces("ball", "sinking", 0.2),
+_MAKERS: dict[str, Callable[[str], WalkScene]] = {
+    "box": partial(_on_fifty_pieces, "box", 0.01),
+    "edge": partial(_on_fifty_pieces, "edge", 0.01),
+    "spike": partial(_on_fifty_pieces, "spike", 0.05),
+    "ball": partial(_on_fifty_pieces, "ball", 0.2),
     "flush": _box_through_flush,
     "prism": _prism_on_plane,
     "convex-edge": _ball_over_edge,
     "legs": _legs_on_legs,
     "tips": _scattered,
     "peg-hole": _peg_in_hole,
-    "spoon-cup": lambda: _shipped("spoon", "cup"),
-    "peg-torus": lambda: _shipped("peg", "torus"),
-    "hammer-block": lambda: _shipped("hammer", "block"),
-    "pen-sphere": lambda: _shipped("pen", "sphere"),
+    "spoon-cup": partial(_shipped, "spoon", "cup"),
+    "peg-torus": partial(_shipped, "peg", "torus"),
+    "hammer-block": partial(_shipped, "hammer", "block"),
+    "pen-sphere": partial(_shipped, "pen", "sphere"),
 }
+_OF_SHIPPED_TOOLS = ("spoon-cup", "peg-torus", "hammer-block", "pen-sphere")
+# Its hole is narrower than the default tolerance.
+_TIGHT = "peg-hole"
+
+
+def _list_scenes() -> Iterator[tuple[str, Callable[[], WalkScene]]]:
+    """Yields keys and makers: with the default gains, then with softer ones."""
+    for key, make in _MAKERS.items():
+        if key != _TIGHT:
+            yield key, partial(make, "default")
+    for key, make in _MAKERS.items():
+        gains = "soft" if key in _OF_SHIPPED_TOOLS else "sinking"
+        yield f"{key}-{gains}", partial(make, gains)
+
+
+SCENES = dict(_list_scenes())
 
 
 @cache

@@ -29,7 +29,7 @@ def test_a_turn_is_that_of_its_rotation_vector(rotvec: list[float]) -> None:
         np.testing.assert_allclose(calc_turn(R), rotvec, atol=1e-10)
 
 
-@pytest.mark.parametrize("key", ["flush", "prism", "spoon-cup"])
+@pytest.mark.parametrize("key", ["flush-sinking", "prism-sinking", "spoon-cup-soft"])
 def test_a_walk_stays_in_contact_within_the_press_range(key: str) -> None:
     scene = make_scene(key)
     ticks = list(walk(scene, 3000))
@@ -63,27 +63,29 @@ def test_changes_of_contacts_are_told_apart() -> None:
 
 
 def test_the_octree_jumps_and_the_rig_knows_that_it_was_the_clusters() -> None:
-    found = measure(make_scene("peg-hole"), STEPS, ("octree",))["octree"]
+    found = measure(make_scene("peg-hole-sinking"), STEPS, ("octree",))["octree"]
     of_clusters = found.exceeds & (found.causes == CAUSES.index("clusters"))
     assert of_clusters.any()
     assert found.chain_gain[of_clusters].max() > 10 * JUMP
 
 
 def test_a_box_that_rocks_is_steep_and_does_not_jump() -> None:
-    found = measure(make_scene("flush"), STEPS, ("shared",))["shared"]
+    found = measure(make_scene("flush-sinking"), STEPS, ("shared",))["shared"]
     assert found.ratio.max() > JUMP
     assert (found.causes[found.exceeds] == CAUSES.index("steep")).all()
     assert found.ratio[:, 0].max() < 1 + 1e-6
 
 
-@pytest.mark.parametrize("key", ["box-sinking", "edge", "peg-hole", "legs"])
+@pytest.mark.parametrize(
+    "key", ["box-sinking", "edge-sinking", "peg-hole-sinking", "legs-sinking"]
+)
 def test_shared_contacts_multiply_no_change(key: str) -> None:
     found = measure(make_scene(key), STEPS, ("shared",))["shared"]
     assert found.chain_gain.max() < 8
 
 
 def test_contacts_that_only_glide_make_no_jump() -> None:
-    found = measure(make_scene("tips"), STEPS)
+    found = measure(make_scene("tips-sinking"), STEPS)
     assert found["octree"].ratio.max() > 3 * JUMP
     # Contacts along one direction are at most 4/3 as stiff as one; the tips press
     # along five, and shares shift.
@@ -99,7 +101,9 @@ def test_the_page_covers_every_scene_and_method() -> None:
             assert f"| {make_scene(key).name} | {method} | " in page
 
 
-@pytest.mark.parametrize("key", ["spoon-cup", "tips", "flush"])
+@pytest.mark.parametrize(
+    "key", ["edge", "spoon-cup-soft", "tips-sinking", "flush-sinking"]
+)
 def test_the_first_steps_walked_again_change_no_more_than_the_page_tells(
     key: str,
 ) -> None:
