@@ -141,7 +141,7 @@ def _make_jump_rows() -> Iterator[list[str]]:
             f"{steps:,} steps in each of {len(shared)} scenes",
             f"{_share_of_jumps(shared, steps)} of the steps change force or torque by"
             " over 10 times what their spring explains, the force by"
-            f" {force:,.3g} times at most",
+            f" {float(f'{force:.3g}'):,g} times at most",
             f"octree {_share_of_jumps(octree, steps)}",
             "[continuity](continuity.md)",
         ]
