@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -30,8 +31,8 @@ class RenderedBody:
     """A body of a plant with its contact pieces.
 
     Attributes:
-        name: Name in the ports: that of the body, preceded by its model instance if two
-            rendered bodies have the same name.
+        name: Name in the ports: that of the body; if several rendered bodies have it,
+            `model_name`, or `model::name` where `model_name` is taken too.
         body: Body of the plant, whose frame is that of the pieces.
         pieces: Convex pieces of its shapes.
         X_WB: Pose of the body in the world, if it is welded to the world; None if it
@@ -176,16 +177,7 @@ def make_rendered_bodies(
             plant.EvalBodyPoseInWorld(context, body) if body.index() in fixed else None,
         )
 
-    names = [body.name() for body in environment]
-    objects = [
-        render(
-            body,
-            body.name()
-            if names.count(body.name()) == 1
-            else body.scoped_name().get_full().replace("::", "_"),
-        )
-        for body in environment
-    ]
+    objects = list(map(render, environment, _name_bodies(environment)))
     return render(tool, tool.name()), objects
 
 
@@ -228,6 +220,23 @@ def exclude_own_contact(
 
 def _all_bodies(plant: MultibodyPlant) -> list[RigidBody]:
     return [plant.get_body(BodyIndex(i)) for i in range(plant.num_bodies())]
+
+
+def _name_bodies(bodies: Sequence[RigidBody]) -> list[str]:
+    """Returns a name for each body that no other has."""
+    counts = Counter(body.name() for body in bodies)
+    unique = [counts[body.name()] == 1 for body in bodies]
+    full = [body.scoped_name().get_full() for body in bodies]
+    names = [
+        body.name() if alone else name.replace("::", "_")
+        for body, alone, name in zip(bodies, unique, full, strict=True)
+    ]
+    # Body c of model a_b and body b_c of model a would both become a_b_c.
+    counts = Counter(names)
+    return [
+        name if alone or counts[name] == 1 else scoped
+        for name, alone, scoped in zip(names, unique, full, strict=True)
+    ]
 
 
 def _find_attached(plant: MultibodyPlant, tool: RigidBody) -> set[BodyIndex]:

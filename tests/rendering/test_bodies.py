@@ -18,6 +18,7 @@ from pydrake.multibody.tree import (
     SpatialInertia,
 )
 
+from drake_haptics import AddHapticRendering, ContactParameters, Material
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.geometry.parsing.body_shapes import find_body_geometries
 from drake_haptics.rendering.bodies import (
@@ -100,6 +101,70 @@ def test_a_name_of_several_bodies_is_refused():
         find_body(scene.plant, "hand", "environment")
     found = find_body(scene.plant, "right::hand", "environment")
     assert found.model_instance() == scene.plant.GetModelInstanceByName("right")
+
+
+@pytest.mark.parametrize(
+    ("scoped", "expected"),
+    [
+        (
+            ["m::box", "n::box", "k::m_box"],
+            ["m::box", "n_box", "m_box"],
+        ),
+        (
+            ["a_b::c", "a::b_c", "d::c", "d::b_c"],
+            ["a_b::c", "a::b_c", "d_c", "d_b_c"],
+        ),
+    ],
+    ids=["with a body's own name", "with each other"],
+)
+def test_names_with_their_models_that_clash_are_told_apart(scoped, expected):
+    scene = PlantScene()
+    scene.add("tool", BALL)
+    for item in scoped:
+        model, name = item.split("::")
+        if not scene.plant.HasModelInstanceNamed(model):
+            scene.plant.AddModelInstance(model)
+        body = scene.plant.AddRigidBody(
+            name,
+            scene.plant.GetModelInstanceByName(model),
+            SpatialInertia.SolidSphereWithMass(1, 1),
+        )
+        scene.touchable(body, BALL)
+    scene.finalize()
+    # Each body has a gap of its own to the tool, by which it is recognized.
+    bodies = [find_body(scene.plant, item, "environment") for item in scoped]
+    gaps_m = 1e-3 * np.arange(1, len(bodies) + 1)
+    directions = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0]]
+    for body, gap_m, along in zip(bodies, gaps_m, directions, strict=False):
+        X_WB = RigidTransform((2 * BALL.radius() + gap_m) * np.array(along))
+        scene.plant.SetDefaultFloatingBaseBodyPose(body, X_WB)
+    rendering = AddHapticRendering(
+        scene.builder,
+        scene.plant,
+        scene.scene_graph,
+        "tool",
+        environment=bodies,
+        contact=ContactParameters(tolerance_m=5e-3),
+        materials={expected[0]: Material(stiffness_N_per_m=1.0)},
+    )
+    scene.start()
+    context = rendering.GetMyContextFromRoot(scene.root)
+    contacts = rendering.GetOutputPort("contacts").Eval(context)
+    nearest_m = [
+        min(contacts.distance[contacts.object_index == i]) for i in range(len(bodies))
+    ]
+    # Both balls are polytopes within a chord error of 0.1 mm.
+    np.testing.assert_allclose(nearest_m, gaps_m, rtol=0, atol=2e-4)
+    _, objects = make_rendered_bodies(
+        scene.plant,
+        scene.scene_graph.model_inspector(),
+        scene.plant.GetBodyByName("tool"),
+        bodies,
+        role=Role.kProximity,
+        chord_error_m=1e-3,
+        progress=None,
+    )
+    assert [item.name for item in objects] == expected
 
 
 def test_the_environment_is_all_that_the_tool_can_meet(scene):
