@@ -9,6 +9,7 @@ from press_tools import MODELS
 from pydrake.geometry import Box, Mesh, Sphere
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import PrismaticJoint, PrismaticSpring, SpatialInertia
+from pydrake.systems.analysis import InitializeParams, Simulator
 from pydrake.systems.primitives import ConstantVectorSource, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
@@ -78,6 +79,26 @@ def test_a_cube_rests_on_its_skin_and_sinks_by_its_weight(config):
     )
     assert scene.read(rendering, "F_To_W")[5] == pytest.approx(MASS * G, rel=1e-4)
     assert np.abs(scene.velocity("tool")).max() < 1e-5
+
+
+def test_a_copy_of_a_context_goes_on_as_the_original():
+    scene = PlantScene()
+    scene.add_slab()
+    scene.add("tool", CUBE, mass=MASS, side=2 * HALF)
+    rendering = render(scene.finalize())
+    scene.start(tool=RigidTransform([0, 0, 0.015])).simulator.AdvanceTo(0.1)
+
+    def z_of_copy(params):
+        copy = Simulator(scene.diagram, scene.root.Clone())
+        copy.Initialize(params)
+        copy.AdvanceTo(0.15)
+        at = rendering.GetMyContextFromRoot(copy.get_context())
+        return rendering.GetOutputPort("X_WP").Eval(at)[6]
+
+    kept = z_of_copy(InitializeParams(suppress_initialization_events=True))
+    put_back = z_of_copy(InitializeParams())
+    scene.simulator.AdvanceTo(0.15)
+    assert kept == proxy_z(scene, rendering) != put_back
 
 
 @plants
