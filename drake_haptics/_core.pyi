@@ -1098,7 +1098,7 @@ def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
 
     Raises:
-        ValueError: a gain is out of range, or the handle's pose or velocity is not finite or has no quaternion.
+        ValueError: a gain is out of range.
     """
 
 @overload
@@ -1121,7 +1121,7 @@ def limit_coupling(joined: Annotated[NDArray[numpy.float64], dict(shape=(39), or
     The same for the reaction on the handle of `joined_coupling_wrench`.
 
     Raises:
-        ValueError: a limit is negative or not finite, a gain is out of range, or the handle's pose or velocity is not finite or has no quaternion.
+        ValueError: a limit is negative or not finite, or a gain is out of range.
     """
 
 class RigidToolDynamics:

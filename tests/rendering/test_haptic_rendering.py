@@ -330,28 +330,6 @@ def test_a_handle_that_is_not_connected_is_named(left_out):
         scene.simulator.AdvanceTo(0.01)
 
 
-@pytest.mark.parametrize("law", ["penalty", "constraint"])
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("X_WH", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, np.nan]),
-        ("X_WH", np.zeros(7)),
-        ("V_WH", np.full(6, np.nan)),
-    ],
-)
-def test_a_handle_without_a_pose_or_velocity_is_named(law, name, value):
-    scene, rendering = make_scene(
-        contact=ContactParameters(law=law), coupling=CouplingParameters()
-    )
-    given = {"X_WH": pose_to_vector(RigidTransform()), "V_WH": np.zeros(6), name: value}
-    for port, entry in given.items():
-        source = scene.builder.AddSystem(ConstantVectorSource(entry))
-        scene.builder.Connect(source.get_output_port(), rendering.GetInputPort(port))
-    scene.start(tool=RigidTransform([0, 0, 0.3]))
-    with pytest.raises(ValueError, match=f"{name} must be finite"):
-        scene.simulator.AdvanceTo(0.01)
-
-
 def start_with_handle(scene, rendering, speed):
     """Starts with tool and coupling at rest, and the handle, on its slider, moving."""
     scene.start(tool=RigidTransform([0, 0, REST]))

@@ -62,16 +62,9 @@ CouplingGains MakeGains(double k, double b, double kr, double br,
 }
 
 // Takes what has no derivatives from `values`, and all else from `in`.
-//
-// The handle is checked where it enters: behind the law its NaN is a wrench
-// that no longer tells which port it came from.
 template <typename T>
 auto CoupleJoined(const JoinedVector<T>& in,
                   const JoinedVector<double>& values) {
-  PoseFromVector(values.head<7>(), "X_WH");
-  if (!values.segment<6>(7).allFinite()) {
-    throw std::invalid_argument("V_WH must be finite");
-  }
   const PoseVector q_HT = values.tail<7>();
   return ComputeCoupling<T>(in.template head<7>(), in.template segment<6>(7),
                             q_HT, in.template segment<7>(13),
@@ -99,9 +92,7 @@ void BindJoinedCoupling(nb::module_& m) {
       "    (84,): wrench model on the tool at To (78), then the reaction on "
       "the handle at Ho in W (6).\n\n"
       "Raises:\n"
-      "    ValueError: a gain is out of range, or the handle's pose or "
-      "velocity "
-      "is not finite or has no quaternion.");
+      "    ValueError: a gain is out of range.");
   m.def(
       "joined_coupling_wrench",
       [](const AutoDiffVector& joined) {
@@ -263,9 +254,8 @@ void BindLimit(nb::module_& m) {
       nb::arg("joined"), nb::arg("max_torque_Nm"), nb::arg("max_force_N"),
       "The same for the reaction on the handle of `joined_coupling_wrench`.\n\n"
       "Raises:\n"
-      "    ValueError: a limit is negative or not finite, a gain is out of "
-      "range, or the handle's pose or velocity is not finite or has no "
-      "quaternion.");
+      "    ValueError: a limit is negative or not finite, or a gain is out of "
+      "range.");
 }
 
 }  // namespace
