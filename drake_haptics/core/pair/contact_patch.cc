@@ -266,7 +266,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   assert(spread <= layer);
   const double point = layer * layer;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
-  if (!(spread > 0)) return {std::nullopt, 0, point};
+  if (!(spread > 0)) return {std::nullopt, false, 0, point};
   const FlushFacets of_A(pair.A, vertex_pair.a, -n),
       of_B(pair.B, vertex_pair.b, n_B);
   Patch patch(pair, n, h, spread, layer, workspace, end);
@@ -276,6 +276,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share, 1);
     }
   }
+  const bool has_faces = blend.total > 0;
   if (of_A.rest > 0) {
     VisitFlushEdges(pair.A, vertex_pair.a, n, [&](int edge_A, double share_A) {
       for (const FlushFacets::Item& b : of_B) {
@@ -305,7 +306,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       }
     });
   }
-  PressurePatch found{std::nullopt, 1 - blend.rest,
+  PressurePatch found{std::nullopt, has_faces, 1 - blend.rest,
                       blend.extent + blend.rest * point};
   if (blend.total > 0) {
     const Vec3 flat = witness - n * n.dot(witness);

@@ -29,6 +29,8 @@ struct PressurePatch {
   /// Center of pressure, a point of A's support plane in A's frame (m); none if
   /// the contact has no extent.
   std::optional<Vec3> center;
+  /// Whether two faces overlap in the contact.
+  bool has_faces = false;
   /// Share of the contact, 0 to 1, in flush faces and edges; the rest is at a
   /// point.
   double flushness = 0;

@@ -21,16 +21,6 @@ constexpr double kNoise = 1e-6;
 // Bound on the facets that one convex piece reaches from one contact.
 constexpr std::size_t kMaxReached = 64;
 
-// Flushness from which on contacts in one plane are surely one constraint
-// (contact_similarity.h).
-constexpr double kSurelyFlush = 0.9;
-
-// Share of a contact in a known plane, from 1 where it is flush to 0: it must
-// be gone before it would count as another constraint.
-double FlushPart(double flushness) {
-  return std::max(0.0, (flushness - kSurelyFlush) / (1 - kSurelyFlush));
-}
-
 Feature ToFeature(const std::array<std::int32_t, 2>& kind_and_index) {
   return {static_cast<FeatureKind>(kind_and_index[0]), kind_and_index[1]};
 }
@@ -203,7 +193,7 @@ class Walk {
   }
 
   // @param is_known whether a contact in the same plane is known: then only a
-  //     part of a flush face or edge under pressure counts.
+  //     part of a face under pressure counts.
   void Append(int vertex, int piece, int facet, bool is_known) {
     const Polytope& P = P_.decomposition.pieces[piece];
     const PosedPair pair = is_P_tool_ ? PosedPair{P, convex(), X_AB_}
@@ -223,10 +213,8 @@ class Walk {
     const PressurePatch patch =
         FindSurfacePatch(pair, contact.n, contact.distance, vertex_pair,
                          contact.p_a, tolerance_, &workspace_.patch);
-    const double part = FlushPart(patch.flushness);
-    if (is_known && !(patch.center && part > 0)) return;
+    if (is_known && !patch.has_faces) return;
     SpreadOver(patch, vertex_pair, &contact);
-    if (is_known) contact.extent *= part;
     Contact in_world = InWorld(contact, X_WA_);
     in_world.piece_A = is_P_tool_ ? piece : q_;
     in_world.piece_B = is_P_tool_ ? q_ : piece;
