@@ -32,3 +32,9 @@ def test_pieces_under_a_flush_face_stay_in_near_contact() -> None:
     """At a tilt of a thousandth they were let go, and the torque jumped: once 93."""
     found = measure(make_scene("box"), 6_000, ("shared",))["shared"]
     assert found.ratio.max() < 10
+
+
+def test_pieces_under_an_edge_stay_in_near_contact() -> None:
+    """At a tilt of a thousandth they were let go, and the torque jumped: once 87."""
+    found = measure(make_scene("edge"), 6_000, ("shared",))["shared"]
+    assert found.ratio.max() < 10

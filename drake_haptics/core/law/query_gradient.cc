@@ -42,6 +42,7 @@ ContactOf<AutoDiff> Constant(const Contact& contact) {
       .feature_A = contact.feature_A,
       .feature_B = contact.feature_B,
       .status = contact.status,
+      .is_part = contact.is_part,
   };
 }
 
@@ -72,7 +73,8 @@ class MovingPatch {
         {contact_.support[0], contact_.support[1]}, now.p_WCa,
         std::clamp(tolerance_ - h, 0.0, layer_), layer_, &workspace_);
     Rows5 rows;
-    rows << patch.center.value_or(now.p_WCa), patch.extent, patch.flushness;
+    rows << patch.center.value_or(now.p_WCa),
+        contact_.is_part ? PartExtent(patch) : patch.extent, patch.flushness;
     return rows;
   }
 

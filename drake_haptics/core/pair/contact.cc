@@ -6,7 +6,7 @@ namespace drake_haptics {
 namespace {
 
 // A tick copies contacts from the query to the law.
-static_assert(sizeof(Contact) == 160);
+static_assert(sizeof(Contact) == 168);
 
 std::array<std::int32_t, 2> KindAndIndex(const Feature& feature) {
   return {static_cast<std::int32_t>(feature.kind()), feature.index()};

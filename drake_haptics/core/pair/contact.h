@@ -31,6 +31,9 @@ struct ContactOf {
   std::array<std::int32_t, 2> feature_A{-1, -1};
   std::array<std::int32_t, 2> feature_B{-1, -1};
   std::int32_t status = 0;  ///< ContactStatus
+  /// Whether it is a part of a plane that has another contact; its extent is
+  /// then PartExtent() of its patch.
+  bool is_part = false;
 };
 using Contact = ContactOf<double>;
 

@@ -266,7 +266,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   assert(spread <= layer);
   const double point = layer * layer;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
-  if (!(spread > 0)) return {std::nullopt, false, 0, point};
+  if (!(spread > 0)) return {std::nullopt, 0, point};
   const FlushFacets of_A(pair.A, vertex_pair.a, -n),
       of_B(pair.B, vertex_pair.b, n_B);
   Patch patch(pair, n, h, spread, layer, workspace, end);
@@ -276,7 +276,6 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share, 1);
     }
   }
-  const bool has_faces = blend.total > 0;
   if (of_A.rest > 0) {
     VisitFlushEdges(pair.A, vertex_pair.a, n, [&](int edge_A, double share_A) {
       for (const FlushFacets::Item& b : of_B) {
@@ -306,7 +305,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       }
     });
   }
-  PressurePatch found{std::nullopt, has_faces, 1 - blend.rest,
+  PressurePatch found{std::nullopt, 1 - blend.rest,
                       blend.extent + blend.rest * point};
   if (blend.total > 0) {
     const Vec3 flat = witness - n * n.dot(witness);
@@ -315,6 +314,14 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
     found.center = center + n * n.dot(witness);
   }
   return found;
+}
+
+double PartExtent(const PressurePatch& patch) {
+  // Contacts in one plane are surely one constraint from here on.
+  constexpr double kSurelyFlush = 0.9;
+  if (!patch.center) return 0;
+  return patch.extent * std::max(0.0, (patch.flushness - kSurelyFlush) /
+                                          (1 - kSurelyFlush));
 }
 
 }  // namespace drake_haptics

@@ -29,8 +29,6 @@ struct PressurePatch {
   /// Center of pressure, a point of A's support plane in A's frame (m); none if
   /// the contact has no extent.
   std::optional<Vec3> center;
-  /// Whether two faces overlap in the contact.
-  bool has_faces = false;
   /// Share of the contact, 0 to 1, in flush faces and edges; the rest is at a
   /// point.
   double flushness = 0;
@@ -41,6 +39,12 @@ struct PressurePatch {
   /// the whole.
   double extent = 0;
 };
+
+/// Returns the extent (m²) of a patch that is a part of a plane which has
+/// another contact: all of it where the patch is flush, less as it tilts, and
+/// none before it would count as a constraint of its own
+/// (contact_similarity.h).
+[[nodiscard]] double PartExtent(const PressurePatch& patch);
 
 /// Sides at which a loaded facet ends. Beside a concave edge free space is an
 /// intersection of half-spaces, so the facet's plane and the pressure on it

@@ -193,7 +193,7 @@ class Walk {
   }
 
   // @param is_known whether a contact in the same plane is known: then only a
-  //     part of a face under pressure counts.
+  //     part of a flush face or edge under pressure counts.
   void Append(int vertex, int piece, int facet, bool is_known) {
     const Polytope& P = P_.decomposition.pieces[piece];
     const PosedPair pair = is_P_tool_ ? PosedPair{P, convex(), X_AB_}
@@ -213,9 +213,11 @@ class Walk {
     const PressurePatch patch =
         FindSurfacePatch(pair, contact.n, contact.distance, vertex_pair,
                          contact.p_a, tolerance_, &workspace_.patch);
-    if (is_known && !patch.has_faces) return;
+    if (is_known && !(PartExtent(patch) > 0)) return;
     SpreadOver(patch, vertex_pair, &contact);
+    if (is_known) contact.extent = PartExtent(patch);
     Contact in_world = InWorld(contact, X_WA_);
+    in_world.is_part = is_known;
     in_world.piece_A = is_P_tool_ ? piece : q_;
     in_world.piece_B = is_P_tool_ ? q_ : piece;
     AddOrReplace(in_world);

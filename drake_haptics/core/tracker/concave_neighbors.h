@@ -33,8 +33,8 @@ namespace drake_haptics {
 ///   edge through which the facet was reached than beyond any other, and not
 ///   beyond a convex edge;
 /// - in the plane of a contact that is known already, it carries a part of the
-///   pressure between two faces: the parts of a face that is cut into pieces
-///   push as the whole face does.
+///   pressure of a flush face or edge: the parts of a face that is cut into
+///   pieces push as the whole face does. That share fades as the contact tilts.
 /// A pair of pieces whose query gives a contact gets no other: the facets of a
 /// convex piece are a union.
 

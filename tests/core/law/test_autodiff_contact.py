@@ -12,6 +12,9 @@ from autodiff_check import (
 )
 from contact_samples import contacts_at
 from contact_state import State, T, check_every_column, random_states
+from scipy.spatial.transform import Rotation
+from slide_rig import make_slide_tools
+from slide_scenes import TOP_M, fifty_pieces
 
 from drake_haptics import _core
 from drake_haptics._core import AutoDiffVector
@@ -26,6 +29,25 @@ def test_every_column_has_its_derivatives(pairs, name: str) -> None:
     states = (
         near.at(near.x * np.tile([1.1] * 4 + [1.0] * 9, 3))
         for near in random_states(*pairs[name], "shared", 12)
+    )
+    check_every_column(
+        states, State.contacts, State.differentiate_contacts, COLUMNS, STEP
+    )
+
+
+def test_parts_of_a_cut_face_have_their_derivatives() -> None:
+    """An edge tilts on a plate whose top is in pieces: their extents fade."""
+
+    def touch(rng, tool, solid, tolerance):
+        del tool, solid
+        heading = Rotation.from_rotvec([0, 0, rng.uniform(0, 2 * np.pi)])
+        turn = heading * Rotation.from_rotvec([0, rng.uniform(-1e-2, 1e-2), 0])
+        at = [rng.uniform(0.02, 0.08), rng.uniform(0.015, 0.035)]
+        gap = rng.uniform(-0.2, 0.8) * tolerance
+        return np.array([*np.roll(turn.as_quat(), 1), *at, TOP_M + gap])
+
+    states = random_states(
+        make_slide_tools()["edge"], fifty_pieces(), "shared", 40, touch=touch
     )
     check_every_column(
         states, State.contacts, State.differentiate_contacts, COLUMNS, STEP
