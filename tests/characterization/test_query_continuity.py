@@ -38,3 +38,9 @@ def test_pieces_under_an_edge_stay_in_near_contact() -> None:
     """At a tilt of a thousandth they were let go, and the torque jumped: once 87."""
     found = measure(make_scene("edge"), 6_000, ("shared",))["shared"]
     assert found.ratio.max() < 10
+
+
+def test_only_the_surface_of_overlapping_pieces_presses() -> None:
+    """Virtual facets took a share of the pressure, and the torque jumped: once 20."""
+    found = measure(make_scene("legs"), 6_100, ("shared",))["shared"]
+    assert found.ratio.max() < 10

@@ -25,7 +25,8 @@ inline double EdgeShare(double sine) {
 }
 
 /// Facets at a vertex that are nearly flush with the contact's plane, and the
-/// share of the contact that they leave to edges.
+/// share of the contact that they leave to edges. Virtual facets carry no
+/// pressure: they are inside the body, or another piece has their face.
 struct FlushFacets {
   struct Item {
     int index = -1;
@@ -41,8 +42,10 @@ struct FlushFacets {
     // Slightly below the cosine of the tilt kTilted.
     constexpr double kCosTilted = 0.9974;
     for (const Polytope::OneRingEntry& ring_entry : P.fan_of(vertex)) {
-      if (!(ring_entry.normal.dot(outward) > kCosTilted) || count == kMost)
+      if (!(ring_entry.normal.dot(outward) > kCosTilted) || count == kMost ||
+          !P.facets[ring_entry.facet].original) {
         continue;
+      }
       const double share = FacetShare(ring_entry.normal.cross(outward).norm());
       if (!(share > 0)) continue;
       facets[count++] = {ring_entry.facet, share};
