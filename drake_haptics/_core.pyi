@@ -1783,6 +1783,7 @@ class FrameChange:
 
         Raises:
             FloatingPointError: the motion is not finite.
+            ValueError: the quaternion is not of length 1, to 1e-3.
         """
 
     def change_wrench_back(self, F_A: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:

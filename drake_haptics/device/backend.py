@@ -18,6 +18,9 @@ from drake_haptics._core import ContactServo, ServoTool
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.one_line import count, one_line
 
+# That of the core at each tick.
+_QUATERNION_TOLERANCE = 1e-3
+
 _Backend = TypeVar("_Backend", bound="DeviceBackend")
 
 
@@ -211,6 +214,32 @@ class DeviceBackend(ABC):
     def __exit__(self, *_: object) -> None:
         """Closes the backend."""
         self.close()
+
+
+def check_reading(reading: DeviceReading) -> None:
+    """Checks the arrays of a reading, more slowly than each tick could.
+
+    Raises:
+        ValueError: One of them is not an array of its size, or the handle's motion is
+            not finite or has no unit quaternion.
+    """
+    for name, size in (("X_BH", 7), ("V_BH", 6), ("F_Ho_B", 6)):
+        values = getattr(reading, name)
+        if (
+            not isinstance(values, np.ndarray)
+            or values.shape != (size,)
+            or not (name == "F_Ho_B" or np.isfinite(values).all())
+        ):
+            raise ValueError(
+                f"{name} of a device's reading must be {size} finite numbers in an"
+                f" array, is {values!r}"
+            )
+    length = np.linalg.norm(reading.X_BH[:4])
+    if abs(length - 1.0) > _QUATERNION_TOLERANCE:
+        raise ValueError(
+            "the quaternion in X_BH of a device's reading must have length 1, has"
+            f" {length:g}"
+        )
 
 
 def make_silent(reading: DeviceReading) -> DeviceReading:

@@ -5,12 +5,16 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-import numpy as np
 from pydrake.math import RigidTransform
 
 from drake_haptics.common.one_line import count
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.device.backend import DeviceBackend, DeviceError, DeviceReading
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceError,
+    DeviceReading,
+    check_reading,
+)
 from drake_haptics.loop.simulated_device import find_base, make_hand_path
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import Scene
@@ -18,7 +22,6 @@ from drake_haptics.systems.device.device_io import DeviceIo
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 _LOOK_AGAIN_S = 0.01
-_QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
 
     Raises:
         DeviceError: The device has sent no usable reading.
-        ValueError: The reading's pose is not rigid, or a number is not finite.
+        ValueError: The reading is not one, as in `check_reading`.
     """
     end_s = time.monotonic() + timeout_s
     while (reading := backend.read()) is None:
@@ -89,25 +92,8 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
                 " `drake-haptics device` is a driver to try, at udp://127.0.0.1:7400"
             )
         time.sleep(_LOOK_AGAIN_S)
-    _check_reading(reading)
+    check_reading(reading)
     return reading
-
-
-def _check_reading(reading: DeviceReading) -> None:
-    """Raises ValueError for an invalid reading."""
-    for name, size in (("X_BH", 7), ("V_BH", 6)):
-        values = np.asarray(getattr(reading, name), dtype=float)
-        if values.shape != (size,) or not np.isfinite(values).all():
-            raise ValueError(
-                f"{name} of a device's reading must be {size} finite numbers, is"
-                f" {values}"
-            )
-    length = np.linalg.norm(reading.X_BH[:4])
-    if abs(length - 1.0) > _QUATERNION_TOLERANCE:
-        raise ValueError(
-            "the quaternion in X_BH of a device's reading must have length 1, has"
-            f" {length:g}"
-        )
 
 
 def place_device(

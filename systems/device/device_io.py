@@ -27,6 +27,7 @@ from drake_haptics.device.backend import (
     DeviceReading,
     Fault,
     GateState,
+    check_reading,
 )
 from drake_haptics.systems.framework.differentiable_system import (
     export_parts,
@@ -63,7 +64,7 @@ class DeviceIo(Diagram):
 
     The state is one discrete group (37), [X_WH; V_WH] and the numbers of the reading,
     replaced by an unrestricted update every period from 0 s on. It raises
-    FloatingPointError if a reading is not finite.
+    FloatingPointError if a reading is not finite, and ValueError if it is not one.
     """
 
     def __init__(
@@ -160,16 +161,21 @@ class _Exchange(LeafSystem):
 
     def _to_state(self, reading: DeviceReading) -> np.ndarray:
         """Returns the state (37,): [X_WH; V_WH], then the numbers of a reading."""
-        return self._frame.change_reading(
-            reading.X_BH,
-            reading.V_BH,
-            reading.F_Ho_B,
-            reading.sequence,
-            reading.time_s,
-            reading.buttons,
-            reading.gate,
-            reading.fault,
-        )
+        try:
+            return self._frame.change_reading(
+                reading.X_BH,
+                reading.V_BH,
+                reading.F_Ho_B,
+                reading.sequence,
+                reading.time_s,
+                reading.buttons,
+                reading.gate,
+                reading.fault,
+            )
+        except (TypeError, ValueError):
+            # The core does not tell which part of a reading is wrong.
+            check_reading(reading)
+            raise
 
     def _write(self, context: Context) -> None:
         state = self._eval_state(context)

@@ -1,6 +1,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -152,6 +153,9 @@ void BindHeldArm(nb::module_& m) {
           "The same with derivatives; `time_s` is (1,).");
 }
 
+// Error of a quaternion's length, from the few digits that a device may send.
+constexpr double kQuaternionTolerance = 1e-3;
+
 void BindFrameChange(nb::module_& m) {
   using Slope = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   nb::class_<FrameChange>(m, "FrameChange",
@@ -174,6 +178,10 @@ void BindFrameChange(nb::module_& m) {
                 sequence, time, buttons, gate, fault;
             RequireFinite(state.head<13>(),
                           "the device's reading is not finite");
+            if (std::abs(X_BH.head<4>().norm() - 1.0) > kQuaternionTolerance) {
+              throw std::invalid_argument(
+                  "the quaternion in X_BH must have length 1");
+            }
             return state;
           },
           nb::arg("X_BH"), nb::arg("V_BH"), nb::arg("F_Ho_B"),
@@ -181,7 +189,9 @@ void BindFrameChange(nb::module_& m) {
           nb::arg("gate"), nb::arg("fault"),
           "The motion of H in A (13,), followed by all numbers of a "
           "`DeviceReading` (24,).\n\n"
-          "Raises:\n    FloatingPointError: the motion is not finite.")
+          "Raises:\n"
+          "    FloatingPointError: the motion is not finite.\n"
+          "    ValueError: the quaternion is not of length 1, to 1e-3.")
       .def(
           "change_wrench_back",
           [](const FrameChange& self, const Vec6& F_A) {

@@ -56,6 +56,7 @@ def test_a_reading_is_its_motion_and_then_its_numbers():
     X_AB = RigidTransform(RollPitchYaw(0.3, -0.9, 2.0), [1.0, 2.0, 3.0])
     change = FrameChange(pose_to_vector(X_AB))
     X_BH, V_BH, F_Ho_B = rng.normal(size=7), rng.normal(size=6), rng.normal(size=6)
+    X_BH[:4] /= np.linalg.norm(X_BH[:4])
     told = [2**40, 0.25, 5, 3, 1]
     reading = change.change_reading(X_BH, V_BH, F_Ho_B, *told)
     motion = change.change_motion(X_BH, V_BH)

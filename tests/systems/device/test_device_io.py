@@ -1,6 +1,6 @@
 """The exchange with a device: which value, in which frame, at which instant."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -147,6 +147,23 @@ def test_a_handle_that_is_nowhere_ends_the_simulation():
     lost = make_reading(position=(0.0, np.nan, 0.0))
     diagram, _ = make_diagram(ScriptedDevice(lambda _: lost))
     with pytest.raises(FloatingPointError, match="device's reading is not finite"):
+        Simulator(diagram).AdvanceTo(PERIOD)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"X_BH": [1.0, 0, 0, 0, 0, 0, 0]}, "X_BH .* must be 7 finite numbers in"),
+        ({"V_BH": np.zeros(3)}, "V_BH .* must be 6 finite numbers"),
+        ({"F_Ho_B": None}, "F_Ho_B .* must be 6 .* is None"),
+        ({"X_BH": np.zeros(7)}, "quaternion in X_BH .* length 1, has 0"),
+        ({"X_BH": 2 * make_reading().X_BH}, "quaternion in X_BH .* length 1, has 2"),
+    ],
+)
+def test_a_later_reading_that_is_none_is_told_as_the_first_would_be(wrong, words):
+    backend = ScriptedDevice(lambda k: replace(make_reading(k), **wrong))
+    diagram, _ = make_diagram(backend)
+    with pytest.raises(ValueError, match=words):
         Simulator(diagram).AdvanceTo(PERIOD)
 
 
