@@ -11,7 +11,10 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics.common.value_checks import check_positive
-from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_command,
+    number_period,
+)
 
 _LONGEST_TTL_S = 10.0
 # Long enough for one message to get through at any rate of a haptic loop.
@@ -76,7 +79,7 @@ class HapticCommandSender(LeafSystem):
             lcmt_haptic_command(
                 utime=round(1e6 * context.get_time()),
                 session=self._session,
-                sequence=1 + round(context.get_time() / self._period_s),
+                sequence=number_period(context.get_time(), self._period_s),
                 time_to_live=self._time_to_live,
                 enable=enable,
                 wrench=tuple(self._F_Ho_B.Eval(context).tolist()),

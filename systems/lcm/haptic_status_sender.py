@@ -12,7 +12,11 @@ from pydrake.systems.framework import (
 
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.gate import GateStatus
-from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status, to_int32
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_status,
+    number_period,
+    to_int32,
+)
 
 
 class HapticStatusSender(LeafSystem):
@@ -74,7 +78,7 @@ class HapticStatusSender(LeafSystem):
             lcmt_haptic_status(
                 utime=round(1e6 * context.get_time()),
                 boot=self._boot,
-                sequence=1 + round(context.get_time() / self._period_s),
+                sequence=number_period(context.get_time(), self._period_s),
                 session=gate.session,
                 command_sequence=gate.command_sequence,
                 pose=tuple(self._X_BH.Eval(context).tolist()),

@@ -203,6 +203,16 @@ class lcmt_haptic_command(FixedMessage):
     wrench: tuple[float, ...] = member("double", 6)
 
 
+def number_period(time_s: float, period_s: float) -> int:
+    """Returns the number, from 1 on, of the period that contains a time.
+
+    Args:
+        time_s: Time, s; a round-off before the end of a period belongs to the next.
+        period_s: Period, s.
+    """
+    return 1 + math.floor(time_s / period_s + 1e-6)
+
+
 def to_int32(bits: int) -> int:
     """Returns the number that an `int32_t` with these 32 bits is; others are lost."""
     return (bits + _INT32_RANGE // 2) % _INT32_RANGE - _INT32_RANGE // 2

@@ -247,6 +247,26 @@ def test_a_command_is_released_at_first_and_while_it_is_not_enabled():
         assert send(0.06).enable is enable
 
 
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.75])
+def test_messages_that_are_published_between_ticks_are_numbered_one_by_one(share):
+    """As by an `LcmPublisherSystem` with a `publish_offset`."""
+    command, status = HapticCommandSender(PERIOD_S), HapticStatusSender(PERIOD_S)
+    for sender, inputs in [
+        (command, {"F_Ho_B": np.zeros(6)}),
+        (status, {"X_BH": np.zeros(7), "V_BH": np.zeros(6)}),
+    ]:
+        context = sender.CreateDefaultContext()
+        for name, value in inputs.items():
+            sender.GetInputPort(name).FixValue(context, value)
+        if sender is status:
+            sender.GetInputPort("gate_status").FixValue(context, GateStatus())
+        numbers = []
+        for k in range(2000):
+            context.SetTime(share * PERIOD_S + k * PERIOD_S)
+            numbers.append(sender.get_output_port().Eval(context).sequence)
+        assert numbers == list(range(1, 2001))
+
+
 def test_a_status_as_it_is_sent_and_received():
     sender = HapticStatusSender(PERIOD_S)
     context = sender.CreateDefaultContext()
