@@ -101,8 +101,8 @@ def AddHapticLoop(
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there is
-            not a material for each object, or an option does not exist under the law of
-            contact.
+            not a material for each object, the device's period is another, or an option
+            does not exist under the law of contact.
         TypeError: An argument has the wrong type; the message names it.
     """
     require_kinds(
@@ -124,6 +124,9 @@ def AddHapticLoop(
     )
     if servo_period_s is not None and not is_constraint(contact):
         raise ValueError("servo_period_s is for contact.law: constraint")
+    # A servo is a thread of a real device, and the port of a simulated one.
+    in_port = servo_period_s is not None and device.start_contact_servo is None
+    check_device_period(device, (in_port and servo_period_s) or period_s)
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
@@ -234,6 +237,21 @@ def AddHapticLoop(
         joined = chain["motions_and_gains"]
         builder.Connect(joined, device.GetInputPort("coupled_motions"))
     return loop
+
+
+def check_device_period(device: HapticDevice, period_s: float) -> None:
+    """Checks that a device holds its wrench for a period.
+
+    Effects and bounds of stability count on it, and would be wrong in silence.
+
+    Raises:
+        ValueError: It holds it for another.
+    """
+    if not math.isclose(device.period_s, period_s):
+        raise ValueError(
+            f"device: its period_s must be that of the loop, {period_s:g} s, is"
+            f" {device.period_s:g} s"
+        )
 
 
 def _find_servo(

@@ -8,7 +8,10 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.loop.add_haptic_loop import make_coupling_gains
+from drake_haptics.loop.add_haptic_loop import (
+    check_device_period,
+    make_coupling_gains,
+)
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.wiring import RenderingWiring
@@ -114,11 +117,13 @@ class HapticRendering(Diagram):
                 plant's integrator, s.
 
         Raises:
-            ValueError: A gain or size is out of range, or an effect or the device lacks
-                something that it needs.
+            ValueError: A gain or size is out of range, an effect or the device lacks
+                something that it needs, or the device's period is another.
         """
         super().__init__()
         _check_effects(effects, coupling, device)
+        if device is not None:
+            check_device_period(device, period_s)
         self._tool = tool
         self._objects = tuple(objects)
         step_s = tool.body.GetParentPlant().time_step()

@@ -70,6 +70,7 @@ class HapticDevice(Diagram):
             ValueError: The period or a limit is out of range.
         """
         super().__init__()
+        self._period_s = period_s
         self._max_force_N = max_force_N
         self._max_torque_Nm = max_torque_Nm
         builder = DiagramBuilder()
@@ -97,6 +98,11 @@ class HapticDevice(Diagram):
         self._start_contact_servo: _StartServo | None = getattr(
             backend, "start_contact_servo", None
         )
+
+    @property
+    def period_s(self) -> float:
+        """The tick, s."""
+        return self._period_s
 
     @property
     def max_force_N(self) -> float:

@@ -148,14 +148,20 @@ def add_loop_around_a_cart(tmp_path, **options):
         tool=core,
         tool_dynamics=RigidToolDynamics(0.1, np.zeros(3), 1e-5 * np.eye(3)),
         objects=[ContactObject("cart", core)],
-        contact=ContactParameters(),
         coupling=CouplingParameters(),
         X_HT=RigidTransform(),
         X_WT=RigidTransform(preset.workspace_center_m),
-        period_s=1e-3,
-        **options,
+        **{"contact": ContactParameters(), "period_s": 1e-3} | options,
     )
     return builder, loop
+
+
+def test_a_device_of_another_period_is_refused(tmp_path):
+    with pytest.raises(ValueError, match=r"must be that of the loop, 0.002 s, is 0.00"):
+        add_loop_around_a_cart(tmp_path, period_s=2e-3)
+    constraint = ContactParameters(law="constraint")
+    with pytest.raises(ValueError, match=r"must be that of the loop, 0.0005 s"):
+        add_loop_around_a_cart(tmp_path, contact=constraint, servo_period_s=5e-4)
 
 
 @pytest.mark.parametrize("effects", [Effects(), Effects(**EVERY)])

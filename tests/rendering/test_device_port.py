@@ -77,3 +77,17 @@ def test_a_limit_that_cannot_be_is_refused():
         make_device_port(hold_at(0.05), **LIMITS | {"max_force_N": -1.0})
     with pytest.raises(ValueError, match="period_s"):
         make_device_port(hold_at(0.05), **LIMITS | {"period_s": 0.0})
+
+
+@pytest.mark.parametrize("period_s", [None, 5e-4])
+def test_a_device_of_another_period_is_refused(period_s):
+    builder = DiagramBuilder()
+    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 1e-3)
+    Parser(plant).AddModelsFromString(WORLD, "sdf")
+    plant.Finalize()
+    device, _ = make_device_port(hold_at(0.05), **LIMITS | {"period_s": 3e-3})
+    options = {"coupling": CouplingParameters(), "period_s": period_s}
+    with pytest.raises(ValueError, match=r"device: its period_s must be .*, is 0.003"):
+        AddHapticRendering(
+            builder, plant, scene_graph, "cube", device=device, **options
+        )
