@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 
@@ -101,8 +102,9 @@ def AddHapticLoop(
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there is
-            not a material for each object, the device's period is another, or an option
-            does not exist under the law of contact.
+            not a material for each object, the device's period is another, the builder
+            has a system of a name that the loop needs, or an option does not exist
+            under the law of contact.
         TypeError: An argument has the wrong type; the message names it.
     """
     require_kinds(
@@ -232,11 +234,22 @@ def AddHapticLoop(
         connect_by_name(
             builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
         )
+    _check_names(builder)
     builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
     if chain and systems.passivity is None:
         joined = chain["motions_and_gains"]
         builder.Connect(joined, device.GetInputPort("coupled_motions"))
     return loop
+
+
+def _check_names(builder: DiagramBuilder) -> None:
+    """Refuses a name that is used twice, at which Drake's `Build` ends the process."""
+    counts = Counter(system.get_name() for system in builder.GetSystems())
+    if twice := [name for name, number in counts.items() if number > 1]:
+        raise ValueError(
+            f"builder: has two systems called {', '.join(map(repr, twice))}; build each"
+            " loop into a diagram of its own, and add those diagrams to yours"
+        )
 
 
 def check_device_period(device: HapticDevice, period_s: float) -> None:

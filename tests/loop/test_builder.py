@@ -128,7 +128,7 @@ def test_an_unknown_preset_is_refused_before_any_mesh_is_read(tmp_path):
         BuildHapticDiagram(scene)
 
 
-def add_loop_around_a_cart(tmp_path, **options):
+def add_loop_around_a_cart(tmp_path, builder=None, **options):
     """Returns a builder with a loop whose only object moves, and the loop."""
     core = BuildHapticDiagram(over_a_plate(tmp_path, [START])).tool.core
     preset = load_device_preset("phantom_premium_1_5_6dof")
@@ -141,7 +141,7 @@ def add_loop_around_a_cart(tmp_path, **options):
         None,
     )
     arm.set_name("arm")
-    builder = DiagramBuilder()
+    builder = builder or DiagramBuilder()
     loop = AddHapticLoop(
         builder,
         device=HapticDevice(arm, period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1),
@@ -154,6 +154,14 @@ def add_loop_around_a_cart(tmp_path, **options):
         **{"contact": ContactParameters(), "period_s": 1e-3} | options,
     )
     return builder, loop
+
+
+def test_a_second_loop_in_one_builder_is_refused_before_drake_ends_the_process(
+    tmp_path,
+):
+    builder, _ = add_loop_around_a_cart(tmp_path)
+    with pytest.raises(ValueError, match=r"two systems called 'device', .* of its own"):
+        add_loop_around_a_cart(tmp_path, builder)
 
 
 def test_a_device_of_another_period_is_refused(tmp_path):
