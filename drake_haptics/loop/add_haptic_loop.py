@@ -35,6 +35,7 @@ from drake_haptics.scene.schema import (
     FrictionParameters,
     Material,
 )
+from drake_haptics.scene.validation import check_parameters
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.load_shedding import LoadShedding
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -132,6 +133,7 @@ def AddHapticLoop(
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
+    check_parameters(contact, dict(enumerate(materials)), effects, coupling)
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     sheds_load = load_shedding is not None

@@ -124,8 +124,7 @@ def check_rendering(
     Raises:
         SceneError: A value is out of range, or has no effect under this law.
     """
-    _check_contact(contact)
-    _check_effects(effects)
+    check_parameters(contact, materials, effects, coupling)
     if is_constraint(contact):
         places = {f"materials[{name!r}]": item for name, item in materials.items()}
         check_constraint_law(contact, effects, sheds_load=False, materials=places)
@@ -135,6 +134,22 @@ def check_rendering(
             "is not for a body of a plant under contact.law: constraint, whose proxy"
             " has no friction: take it out, or take contact.law: penalty",
         )
+
+
+def check_parameters(
+    contact: ContactParameters,
+    materials: Mapping[str, Material] | Mapping[int, Material],
+    effects: Effects,
+    coupling: CouplingParameters | None,
+) -> None:
+    """Checks each of the parameters of contact, effects and coupling.
+
+    Raises:
+        SceneError: A value is out of range, or a material refers to an effect that is
+            not there.
+    """
+    _check_contact(contact)
+    _check_effects(effects)
     for name, material in materials.items():
         _check_material(material, f"materials[{name!r}]", effects)
     if coupling is not None:

@@ -21,6 +21,7 @@ from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
     Effects,
+    Material,
     Pose,
 )
 from drake_haptics.systems.arm.hand_path import HandPath
@@ -154,6 +155,21 @@ def add_loop_around_a_cart(tmp_path, builder=None, **options):
         **{"contact": ContactParameters(), "period_s": 1e-3} | options,
     )
     return builder, loop
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"contact": ContactParameters(law="constrain")}, "contact.law is 'constrain'"),
+        (
+            {"materials": [Material(friction_coefficient=0.3)]},
+            r"materials\[0\].friction_coefficient means nothing without",
+        ),
+    ],
+)
+def test_what_would_be_left_out_in_silence_is_refused(tmp_path, options, words):
+    with pytest.raises(SceneError, match=words):
+        add_loop_around_a_cart(tmp_path, **options)
 
 
 def test_a_second_loop_in_one_builder_is_refused_before_drake_ends_the_process(
