@@ -127,9 +127,8 @@ def AddHapticLoop(
     )
     if servo_period_s is not None and not is_constraint(contact):
         raise ValueError("servo_period_s is for contact.law: constraint")
-    # A servo is a thread of a real device, and the port of a simulated one.
-    in_port = servo_period_s is not None and device.start_contact_servo is None
-    check_device_period(device, (in_port and servo_period_s) or period_s)
+    # A simulated device shows what the servo finds, a replayed one what the tick does.
+    check_device_period(device, period_s, servo_period_s or period_s)
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
@@ -254,17 +253,17 @@ def _check_names(builder: DiagramBuilder) -> None:
         )
 
 
-def check_device_period(device: HapticDevice, period_s: float) -> None:
-    """Checks that a device holds its wrench for a period.
+def check_device_period(device: HapticDevice, *periods_s: float) -> None:
+    """Checks that a device holds its wrench for one of some periods.
 
     Effects and bounds of stability count on it, and would be wrong in silence.
 
     Raises:
         ValueError: It holds it for another.
     """
-    if not math.isclose(device.period_s, period_s):
+    if not any(math.isclose(device.period_s, period) for period in periods_s):
         raise ValueError(
-            f"device: its period_s must be that of the loop, {period_s:g} s, is"
+            f"device: its period_s must be that of the loop, {periods_s[0]:g} s, is"
             f" {device.period_s:g} s"
         )
 

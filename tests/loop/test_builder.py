@@ -183,9 +183,6 @@ def test_a_second_loop_in_one_builder_is_refused_before_drake_ends_the_process(
 def test_a_device_of_another_period_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"must be that of the loop, 0.002 s, is 0.00"):
         add_loop_around_a_cart(tmp_path, period_s=2e-3)
-    constraint = ContactParameters(law="constraint")
-    with pytest.raises(ValueError, match=r"must be that of the loop, 0.0005 s"):
-        add_loop_around_a_cart(tmp_path, contact=constraint, servo_period_s=5e-4)
 
 
 @pytest.mark.parametrize("effects", [Effects(), Effects(**EVERY)])
