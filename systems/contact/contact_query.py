@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -54,6 +55,17 @@ class ContactObject:
     name: str
     decomposition: ConvexPieces
     X_WO: RigidTransform | None = None
+
+
+def check_objects(objects: Sequence[ContactObject]) -> None:
+    """Raises ValueError unless there are objects, each with a name of its own."""
+    if not objects:
+        raise ValueError("objects must not be empty")
+    counts = Counter(item.name for item in objects)
+    if shared := [name for name, number in counts.items() if number > 1]:
+        raise ValueError(
+            f"objects must have different names; several are {', '.join(shared)}"
+        )
 
 
 class ContactQuery(DifferentiableSystem):
@@ -139,10 +151,7 @@ class ContactQuery(DifferentiableSystem):
         if depth not in get_args(DepthSearch):
             raise ValueError(f"depth must be 'tracked' or 'global', is {depth!r}")
         check_at_least(1, max_walk_steps=max_walk_steps)
-        if not objects:
-            raise ValueError("objects must not be empty")
-        if len({item.name for item in objects}) < len(objects):
-            raise ValueError("two objects have the same name")
+        check_objects(objects)
         self._tool = tool
         self._objects = tuple(objects)
         self._depth: DepthSearch = depth

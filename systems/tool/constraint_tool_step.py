@@ -18,7 +18,7 @@ from drake_haptics._core import (
 )
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
-from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.contact_query import ContactObject, check_objects
 from drake_haptics.systems.framework.differentiable_system import export_parts
 from drake_haptics.systems.tool.constraint_step import _ConstraintStep
 
@@ -146,10 +146,7 @@ class ConstraintToolStep(Diagram):
         """
         super().__init__()
         check_positive(period_s=period_s)
-        if not objects:
-            raise ValueError("objects must not be empty")
-        if len({item.name for item in objects}) < len(objects):
-            raise ValueError("two objects have the same name")
+        check_objects(objects)
         if start_servo is not None and any(item.X_WO is None for item in objects):
             raise ValueError("start_servo: the objects must rest")
         self._dynamics = dynamics

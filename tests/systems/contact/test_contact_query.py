@@ -80,7 +80,7 @@ def test_impossible_arguments_are_refused(tool, plate):
     with pytest.raises(ValueError, match="objects"):
         ContactQuery(tool, [], TOLERANCE)
     twice = [ContactObject("plate", plate), ContactObject("plate", plate)]
-    with pytest.raises(ValueError, match="same name"):
+    with pytest.raises(ValueError, match="several are plate"):
         ContactQuery(tool, twice, TOLERANCE)
 
 

@@ -341,7 +341,10 @@ def test_all_outputs_have_the_derivatives_of_doubles():
     [
         ({"period_s": 0.0}, "period_s must be positive"),
         ({"objects": [], "skin_m": []}, "objects must not be empty"),
-        ({"objects": [ContactObject("a", PLATE)] * 2, "skin_m": [1e-4] * 2}, "same"),
+        (
+            {"objects": [ContactObject("a", PLATE)] * 2, "skin_m": [1e-4] * 2},
+            "several are a",
+        ),
         ({"skin_m": [0.0]}, "skin_m"),
         ({"skin_m": [1e-4, 1e-4]}, "skin"),
     ],
