@@ -1,7 +1,8 @@
 #include "base/positive_semidefinite.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+
+#include "base/symmetric_eigen.h"
 
 namespace drake_haptics {
 namespace {
@@ -28,10 +29,9 @@ Mat6 ProjectToPositiveSemidefinite(const Mat6& matrix, bool* changed) {
   const Mat6 symmetric = 0.5 * (even + even.transpose());
   Mat6 passive = symmetric;
   if (!IsPassive(symmetric, size)) {
-    const Eigen::SelfAdjointEigenSolver<Mat6> solver(symmetric);
-    passive = solver.eigenvectors() *
-              solver.eigenvalues().cwiseMax(0).asDiagonal() *
-              solver.eigenvectors().transpose();
+    const SymmetricEigen eigen = DecomposeSymmetric(symmetric);
+    passive = eigen.vectors * eigen.values.cwiseMax(0).asDiagonal() *
+              eigen.vectors.transpose();
   }
   if ((passive - even).cwiseAbs().maxCoeff() > kRoundOff * size) {
     *changed = true;

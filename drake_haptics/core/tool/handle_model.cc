@@ -1,8 +1,7 @@
 #include "tool/handle_model.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "base/positive_semidefinite.h"
+#include "base/symmetric_eigen.h"
 
 namespace drake_haptics {
 namespace {
@@ -15,15 +14,13 @@ constexpr double kSoftest = 1e-12;
 // one unit. By the pseudoinverse the tool does not move in directions in which
 // nothing holds it.
 Mat6 Follow(const Mat6& Kc, const Mat6& Kt) {
-  const Eigen::SelfAdjointEigenSolver<Mat6> both(Kc + Kt);
-  const Vec6 values = both.eigenvalues();
+  const auto [values, axes] = DecomposeSymmetric(Kc + Kt);
   const double softest = kSoftest * values.maxCoeff();
   Vec6 inverse = Vec6::Zero();
   for (int i = 0; i < 6; ++i) {
     if (values[i] > softest) inverse[i] = 1 / values[i];
   }
-  return both.eigenvectors() * inverse.asDiagonal() *
-         both.eigenvectors().transpose() * Kc;
+  return axes * inverse.asDiagonal() * axes.transpose() * Kc;
 }
 
 }  // namespace
