@@ -103,9 +103,9 @@ def AddHapticLoop(
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there is
-            not a material for each object, the device's period is another, the builder
-            has a system of a name that the loop needs, or an option does not exist
-            under the law of contact.
+            not a material for each object, the device's period is not that of the loop,
+            the builder has a system of a name that the loop needs, or an option does
+            not exist under the law of contact.
         TypeError: An argument has the wrong type; the message names it.
     """
     require_kinds(
@@ -259,7 +259,7 @@ def check_device_period(device: HapticDevice, *periods_s: float) -> None:
     Effects and bounds of stability count on it, and would be wrong in silence.
 
     Raises:
-        ValueError: It holds it for another.
+        ValueError: The device's period is not among them.
     """
     if not any(math.isclose(device.period_s, period) for period in periods_s):
         raise ValueError(

@@ -74,7 +74,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
 
     Raises:
         DeviceError: The device has sent no usable reading.
-        ValueError: The reading is not one, as in `check_reading`.
+        ValueError: The reading is invalid; see `check_reading`.
     """
     end_s = time.monotonic() + timeout_s
     while (reading := backend.read()) is None:

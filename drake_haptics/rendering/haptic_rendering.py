@@ -118,7 +118,7 @@ class HapticRendering(Diagram):
 
         Raises:
             ValueError: A gain or size is out of range, an effect or the device lacks
-                something that it needs, or the device's period is another.
+                something that it needs, or the device's period is not `period_s`.
         """
         super().__init__()
         _check_effects(effects, coupling, device)

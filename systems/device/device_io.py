@@ -64,7 +64,8 @@ class DeviceIo(Diagram):
 
     The state is one discrete group (37), [X_WH; V_WH] and the numbers of the reading,
     replaced by an unrestricted update every period from 0 s on. It raises
-    FloatingPointError if a reading is not finite, and ValueError if it is not one.
+    FloatingPointError if a reading is not finite, and ValueError if one of its arrays
+    has the wrong size or its quaternion is not unit.
     """
 
     def __init__(

@@ -25,6 +25,7 @@ constexpr double kSameDepth = 0.25;
 // Contacts that are nearly the same count as fully the same: the small rest
 // would give each its own spring.
 constexpr double kFullSimilarity = 1.25;
+static_assert(kFullSimilarity * kSurelyFlush * kSurelyFlush >= 1);
 // Added to extents (m²), so that contacts without extent share equally.
 constexpr double kLeastExtent = 1e-24;
 

@@ -317,8 +317,6 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
 }
 
 double PartExtent(const PressurePatch& patch) {
-  // Contacts in one plane are surely one constraint from here on.
-  constexpr double kSurelyFlush = 0.9;
   if (!patch.center) return 0;
   return patch.extent *
          std::max(0.0, (patch.flushness - kSurelyFlush) / (1 - kSurelyFlush));

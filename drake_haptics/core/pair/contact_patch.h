@@ -40,10 +40,14 @@ struct PressurePatch {
   double extent = 0;
 };
 
+/// Flushness from which on contacts in one plane surely count as one constraint
+/// (contact_similarity.cc).
+inline constexpr double kSurelyFlush = 0.9;
+
 /// Returns the extent (m²) of a patch that is a part of a plane which has
 /// another contact: all of it where the patch is flush, less as it tilts, and
-/// none before it would count as a constraint of its own
-/// (contact_similarity.h).
+/// none from kSurelyFlush down, where the two may count as different
+/// constraints.
 [[nodiscard]] double PartExtent(const PressurePatch& patch);
 
 /// Sides at which a loaded facet ends. Beside a concave edge free space is an

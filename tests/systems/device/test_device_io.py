@@ -160,7 +160,7 @@ def test_a_handle_that_is_nowhere_ends_the_simulation():
         ({"X_BH": 2 * make_reading().X_BH}, "quaternion in X_BH .* length 1, has 2"),
     ],
 )
-def test_a_later_reading_that_is_none_is_told_as_the_first_would_be(wrong, words):
+def test_a_later_reading_that_is_invalid_is_told_as_the_first_would_be(wrong, words):
     backend = ScriptedDevice(lambda k: replace(make_reading(k), **wrong))
     diagram, _ = make_diagram(backend)
     with pytest.raises(ValueError, match=words):
