@@ -42,6 +42,7 @@ class RunningCommand:
 
     def __exit__(self, *_):
         """Leaves nothing behind."""
+        self.page.close()
         self.process.kill()
         self.process.communicate()
 
