@@ -235,7 +235,7 @@ def AddHapticLoop(
         connect_by_name(
             builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
         )
-    _check_names(builder)
+    check_names(builder)
     builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
     if chain and systems.passivity is None:
         joined = chain["motions_and_gains"]
@@ -243,13 +243,17 @@ def AddHapticLoop(
     return loop
 
 
-def _check_names(builder: DiagramBuilder) -> None:
-    """Refuses a name that is used twice, at which Drake's `Build` ends the process."""
+def check_names(builder: DiagramBuilder) -> None:
+    """Refuses a name that is used twice, at which Drake's `Build` ends the process.
+
+    Raises:
+        ValueError: Two systems of the builder have one name.
+    """
     counts = Counter(system.get_name() for system in builder.GetSystems())
     if twice := [name for name, number in counts.items() if number > 1]:
         raise ValueError(
             f"builder: has two systems called {', '.join(map(repr, twice))}; build each"
-            " loop into a diagram of its own, and add those diagrams to yours"
+            " loop or device into a diagram of its own, and add those diagrams to yours"
         )
 
 

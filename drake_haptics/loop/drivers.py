@@ -18,6 +18,7 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 from drake_haptics.device.lcm.lcm_device import COMMAND_CHANNEL, STATUS_CHANNEL
+from drake_haptics.loop.add_haptic_loop import check_names
 from drake_haptics.loop.simulated_device import (
     make_hand_path,
     make_simulated_device,
@@ -175,7 +176,8 @@ def AddLcmDriver(
         The gate, whose output `gate_status` is its state.
 
     Raises:
-        ValueError: The period or a limit is out of range.
+        ValueError: The period or a limit is out of range, or the builder has a driver
+            already.
     """
     gate = builder.AddNamedSystem(
         "haptic_command_receiver",
@@ -206,4 +208,5 @@ def AddLcmDriver(
         (sender.GetOutputPort("lcmt_haptic_status"), statuses.get_input_port()),
     ]:
         builder.Connect(output, input)
+    check_names(builder)
     return gate

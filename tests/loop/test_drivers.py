@@ -78,3 +78,13 @@ def test_bytes_that_are_not_a_command_are_like_silence(driver, damage):
         status = driver.tick(damaged)
     assert not status.F_Ho_B.any()
     assert (status.state, status.fault) == (GateState.FAULT, Fault.STALE)
+
+
+def test_a_second_driver_in_one_builder_is_refused_before_drake_ends_the_process():
+    builder = DiagramBuilder()
+    add_device(builder, DrakeLcm("memq://"), make_axis())
+    another = make_axis()
+    another.set_name("another_axis")
+    says = "two systems called 'haptic_command_receiver', .* device into a diagram of"
+    with pytest.raises(ValueError, match=says):
+        add_device(builder, DrakeLcm("memq://"), another)
