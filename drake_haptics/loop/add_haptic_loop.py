@@ -13,6 +13,7 @@ from pydrake.systems.framework import DiagramBuilder, OutputPort
 from drake_haptics import _core
 from drake_haptics._core import CouplingGains
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.loop.contact import (
     add_contact_systems,
     can_chain,
@@ -35,7 +36,7 @@ from drake_haptics.scene.schema import (
     FrictionParameters,
     Material,
 )
-from drake_haptics.scene.validation import check_parameters
+from drake_haptics.scene.validation import check_parameters, check_servo_rate
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.load_shedding import LoadShedding
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -93,7 +94,8 @@ def AddHapticLoop(
             `TickEnd` the last.
         servo_period_s: Period at which contact is solved between ticks under the
             constraint law, s: by a thread of the device, or in Drake for a simulated
-            device, whose port has that period. Defaults to the tick.
+            device, whose port has that period. The tick is a whole number of these
+            periods. Defaults to the tick.
         in_one_call: Whether the core calculates from query to force in one call if no
             effect comes in between. Otherwise each system computes its part, so that it
             can be timed.
@@ -133,6 +135,16 @@ def AddHapticLoop(
     if materials is None:
         materials = [Material()] * len(objects)
     check_parameters(contact, dict(enumerate(materials)), effects, coupling)
+    if servo_period_s is not None:
+        check_positive(period_s=period_s, servo_period_s=servo_period_s)
+        check_servo_rate(
+            1.0 / servo_period_s,
+            1.0 / period_s,
+            contact,
+            effects,
+            "1 / servo_period_s",
+            "1 / period_s",
+        )
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     sheds_load = load_shedding is not None

@@ -88,7 +88,13 @@ def check_values(scene: Scene) -> None:
         _check_material(item.material, f"{where}.material", scene.effects)
     _check_contact(scene.contact)
     require_all_positive(scene.device, "device", ["rate_hz"])
-    _check_servo_rate(scene)
+    if scene.device.servo_rate_hz is not None:
+        check_servo_rate(
+            scene.device.servo_rate_hz,
+            scene.device.rate_hz,
+            scene.contact,
+            scene.effects,
+        )
     if scene.contact.query_rate_hz is not None:
         check_query_rate(scene.contact.query_rate_hz, scene.device.rate_hz)
     _check_effects(scene.effects)
@@ -235,26 +241,43 @@ def _require_whole(
     )
 
 
-def _check_servo_rate(scene: Scene) -> None:
-    rate_hz, ticks_per_s = scene.device.servo_rate_hz, scene.device.rate_hz
-    if rate_hz is None:
-        return
-    where = "device.servo_rate_hz"
+def check_servo_rate(
+    rate_hz: float,
+    ticks_per_s: float,
+    contact: ContactParameters,
+    effects: Effects,
+    where: str = "device.servo_rate_hz",
+    ticks: str = "device.rate_hz",
+) -> None:
+    """Checks that contact can be solved at a rate of its own between ticks.
+
+    Args:
+        rate_hz: Rate at which contact is solved, Hz.
+        ticks_per_s: Rate of ticks, Hz.
+        contact: Contact parameters of the loop.
+        effects: Effects of the loop.
+        where: Name of the rate, for the message. Defaults to the key of a scene.
+        ticks: Name of the rate of ticks. Defaults to the key of a scene.
+
+    Raises:
+        SceneError: `rate_hz` is not `ticks_per_s` times a whole number, or is more than
+            that under the penalty law or with friction.
+    """
     steps = rate_hz / ticks_per_s
     nearest_hz = ticks_per_s * max(1, round(steps))
-    rule = f"device.rate_hz ({ticks_per_s:g}) times"
+    rule = f"{ticks} ({ticks_per_s:g}) times"
     _require_whole(steps, where, rate_hz, rule, nearest_hz)
     require(
-        round(steps) == 1 or scene.contact.law == "constraint",
+        round(steps) == 1 or is_constraint(contact),
         where,
-        f"may be more than device.rate_hz ({ticks_per_s:g}) under contact.law:"
-        f" constraint alone, and is {rate_hz:g} under '{scene.contact.law}'",
+        f"may be more than {ticks} ({ticks_per_s:g}) under contact.law:"
+        f" constraint alone, and is {rate_hz:g} under '{contact.law}'",
     )
     require(
-        round(steps) == 1 or scene.effects.friction is None,
+        round(steps) == 1 or effects.friction is None,
         where,
         f"is {rate_hz:g}, and a servo does not tell the loop where friction holds the"
-        " tool: take effects.friction out, or this key",
+        " tool: take effects.friction out, or this rate",
     )
 
 

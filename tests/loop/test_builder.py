@@ -21,6 +21,7 @@ from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
     Effects,
+    FrictionParameters,
     Material,
     Pose,
 )
@@ -129,6 +130,9 @@ def test_an_unknown_preset_is_refused_before_any_mesh_is_read(tmp_path):
         BuildHapticDiagram(scene)
 
 
+CONSTRAINT = ContactParameters(law="constraint")
+
+
 def add_loop_around_a_cart(tmp_path, builder=None, **options):
     """Returns a builder with a loop whose only object moves, and the loop."""
     core = BuildHapticDiagram(over_a_plate(tmp_path, [START])).tool.core
@@ -164,6 +168,18 @@ def add_loop_around_a_cart(tmp_path, builder=None, **options):
         (
             {"materials": [Material(friction_coefficient=0.3)]},
             r"materials\[0\].friction_coefficient means nothing without",
+        ),
+        (
+            {"contact": CONSTRAINT, "servo_period_s": 4e-4},
+            r"1 / servo_period_s must be 1 / period_s \(1000\) times .*, is 2500",
+        ),
+        (
+            {
+                "contact": CONSTRAINT,
+                "servo_period_s": 5e-4,
+                "effects": Effects(friction=FrictionParameters()),
+            },
+            r"1 / servo_period_s is 2000, .* take effects\.friction out",
         ),
     ],
 )
