@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Sequence
 from time import monotonic
@@ -35,12 +36,15 @@ _SLIDERS = (
     ("yaw (deg)", "KeyE", "KeyQ"),
 )
 _HOME = "bring the handle home"
+_CONTROLS = {_HOME, *(name for name, _, _ in _SLIDERS)}
 _LARGEST_ANGLES_DEG = (180.0, 90.0, 180.0)
 _POLL_PERIOD_S = 0.02
 _READOUT_PERIOD_S = 0.25
 # Speeds at full deflection of a stick.
 _STICK_RADII_PER_S = 1.0
 _STICK_TURN_DEG_PER_S = 90.0
+
+_logger = logging.getLogger(__name__)
 
 
 class GamepadReader:
@@ -99,13 +103,19 @@ def _shape(value: float) -> float:
     return math.copysign(beyond, value)
 
 
+def _find_own_controls(meshcat: Meshcat) -> set[str]:
+    """Returns the names of this device's controls that a Meshcat has."""
+    return _CONTROLS & {*meshcat.GetSliderNames(), *meshcat.GetButtonNames()}
+
+
 class MeshcatDevice(DeviceBackend):
     """Six sliders and a home button in Meshcat's controls, and a gamepad if connected.
 
     Sliders set the handle's pose relative to its start: x, y and z along the axes of
     the world, and roll, pitch and yaw about them (in Drake's order). Each has two keys.
     A gamepad's sticks move the sliders; see `GamepadReader`. The last line of the
-    controls shows force and torque.
+    controls shows force and torque. If one of the controls is deleted from outside, the
+    device closes with a logged warning, and the run goes on.
 
     Like all of Drake's Meshcat, it must be used from the thread that made the Meshcat.
     """
@@ -135,9 +145,7 @@ class MeshcatDevice(DeviceBackend):
             raise ValueError(
                 f"workspace_radius_m must be 0.001 or more, is {workspace_radius_m}"
             )
-        taken = {*meshcat.GetSliderNames(), *meshcat.GetButtonNames()}
-        taken &= {_HOME, *(name for name, _, _ in _SLIDERS)}
-        if taken:
+        if taken := _find_own_controls(meshcat):
             raise DeviceError(
                 f"the Meshcat already has controls named {', '.join(sorted(taken))}:"
                 " delete them first"
@@ -177,7 +185,14 @@ class MeshcatDevice(DeviceBackend):
         """Returns the present reading."""
         now_s = monotonic()
         if self._is_open and now_s - self._polled_s >= _POLL_PERIOD_S:
-            self._poll(now_s)
+            if _find_own_controls(self._meshcat) == _CONTROLS:
+                self._poll(now_s)
+            else:
+                self.close()
+                _logger.warning(
+                    "the controls of MeshcatDevice were deleted: its handle rests"
+                    " without force; to move it again, open another MeshcatDevice"
+                )
         return self._handle.read(now_s, self._buttons)
 
     def write(self, command: DeviceCommand) -> None:

@@ -200,6 +200,31 @@ def test_close_takes_the_controls_away_and_the_force(meshcat, device, clock):
     assert reading.gate is GateState.IDLE
 
 
+@pytest.mark.parametrize(
+    "delete",
+    [
+        lambda meshcat: meshcat.DeleteSlider("yaw (deg)"),
+        lambda meshcat: meshcat.DeleteButton(HOME),
+        lambda meshcat: meshcat.DeleteAddedControls(),
+    ],
+    ids=["slider", "button", "all"],
+)
+def test_a_handle_whose_controls_are_deleted_stays_where_it_is(
+    meshcat, device, clock, caplog, delete
+):
+    meshcat.SetSliderValue("x (mm)", 50)
+    X = run(device, clock, 1.0).X_BH
+    device.write(DeviceCommand(np.ones(6), X, np.zeros(6)))
+    delete(meshcat)
+    reading = run(device, clock, 1.0)
+    device.write(DeviceCommand(np.ones(6), X, np.zeros(6)))
+    np.testing.assert_allclose(reading.X_BH, X, atol=1e-6)
+    np.testing.assert_array_equal(reading.F_Ho_B, np.zeros(6))
+    assert meshcat.GetSliderNames() == [] and meshcat.GetButtonNames() == []
+    [record] = caplog.records
+    assert "open another MeshcatDevice" in record.getMessage()
+
+
 def test_controls_of_the_same_names_are_left_alone(meshcat, clock):
     meshcat.AddSlider("yaw (deg)", -1.0, 1.0, 0.1, 0.5)
     with pytest.raises(DeviceError, match=r"already has controls named yaw \(deg\)"):
