@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Context, DiagramBuilder, OutputPort, System
-from pydrake.systems.primitives import Demultiplexer, Multiplexer, ZeroOrderHold
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiagramBuilder,
+    OutputPort,
+    System,
+)
+from pydrake.systems.primitives import Demultiplexer, ZeroOrderHold
 
 from drake_haptics import _core
+from drake_haptics._core import AutoDiffVector
 from drake_haptics.loop.contact import (
     add_contact_systems,
     can_chain,
@@ -22,6 +30,10 @@ from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.friction_reaction import FrictionReaction
 from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.plant.applied_wrenches import AppliedWrenches
 from drake_haptics.systems.plant.body_motions import BodyMotions
 from drake_haptics.systems.plant.body_of_proxy import BodyOfProxy
@@ -30,6 +42,29 @@ from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 # Effects that push the tool by a wrench model.
 _FORCES = ("friction", "braking")
+
+
+class _FiniteInput(DifferentiableSystem):
+    """Passes a vector on, and raises FloatingPointError if it is not finite."""
+
+    def __init__(self, size: int):
+        super().__init__()
+        self._eval = self.DeclareVectorInputPort("input", size).Eval
+        self.DeclareVectorOutputPort("output", size, self._calc)
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        value = self._eval(context)
+        # A sum of floats takes the least time.
+        if not math.isfinite(sum(value.tolist())):
+            raise FloatingPointError(
+                f"{self.GetSystemPathname()} must be finite, is {value.tolist()}:"
+                " correct what is connected to this input"
+            )
+        output.set_value(value)
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the vector with its derivatives."""
+        return at["input"]
 
 
 class RenderingWiring:
@@ -257,10 +292,9 @@ class RenderingWiring:
                 coupling.GetInputPort("X_WH"),
                 coupling.GetInputPort("V_WH"),
             ):
-                # Drake's error names the system whose input is not connected; a
-                # `PassThrough` would give NaN.
+                # Errors name this system.
                 named = self.builder.AddNamedSystem(
-                    port.get_name(), Multiplexer([port.size()])
+                    port.get_name(), _FiniteInput(port.size())
                 )
                 self.builder.Connect(named.get_output_port(), port)
                 self.builder.ExportInput(named.get_input_port(), port.get_name())

@@ -330,6 +330,22 @@ def test_a_handle_that_is_not_connected_is_named(left_out):
         scene.simulator.AdvanceTo(0.01)
 
 
+@pytest.mark.parametrize("law", ["penalty", "constraint"])
+@pytest.mark.parametrize(("lost", "size"), [("X_WH", 7), ("V_WH", 6)])
+def test_a_handle_that_is_nowhere_is_refused_at_its_port(lost, size, law):
+    scene, rendering = make_scene(
+        coupling=CouplingParameters(), contact=ContactParameters(law=law)
+    )
+    hold_handle(scene, rendering, RigidTransform([0, 0, 0.3]))
+    scene.start(tool=RigidTransform([0, 0, 0.3]))
+    rendering.GetInputPort(lost).FixValue(
+        rendering.GetMyMutableContextFromRoot(scene.root), np.full(size, np.nan)
+    )
+    says = rf"::haptic_rendering::{lost} must be finite, is \[nan"
+    with pytest.raises(FloatingPointError, match=says):
+        scene.simulator.AdvanceTo(0.01)
+
+
 def start_with_handle(scene, rendering, speed):
     """Starts with tool and coupling at rest, and the handle, on its slider, moving."""
     scene.start(tool=RigidTransform([0, 0, REST]))
