@@ -223,15 +223,20 @@ def check_reading(reading: DeviceReading) -> None:
         ValueError: One of them is not an array of its size, or the handle's motion is
             not finite or has no unit quaternion.
     """
-    for name, size in (("X_BH", 7), ("V_BH", 6), ("F_Ho_B", 6)):
+    # No system computes with the wrench that a device reports, so it may be NaN.
+    for name, size, finite in (
+        ("X_BH", 7, "finite "),
+        ("V_BH", 6, "finite "),
+        ("F_Ho_B", 6, ""),
+    ):
         values = getattr(reading, name)
         if (
             not isinstance(values, np.ndarray)
             or values.shape != (size,)
-            or not (name == "F_Ho_B" or np.isfinite(values).all())
+            or (finite and not np.isfinite(values).all())
         ):
             raise ValueError(
-                f"{name} of a device's reading must be {size} finite numbers in an"
+                f"{name} of a device's reading must be {size} {finite}numbers in an"
                 f" array, is {values!r}"
             )
     length = np.linalg.norm(reading.X_BH[:4])

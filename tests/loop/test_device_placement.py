@@ -181,7 +181,7 @@ def test_a_device_whose_words_are_all_refused_is_not_called_silent():
     [
         ({"X_BH": np.zeros(3)}, "X_BH .* must be 7 finite numbers"),
         ({"X_BH": [1.0, 0, 0, 0, 0, 0, 0]}, "X_BH .* must be .* in an array"),
-        ({"F_Ho_B": np.zeros(3)}, "F_Ho_B .* must be 6 finite numbers"),
+        ({"F_Ho_B": np.zeros(3)}, "F_Ho_B .* must be 6 numbers"),
         ({"V_BH": np.full(6, np.nan)}, "V_BH .* must be 6 finite numbers"),
         ({"X_BH": np.zeros(7)}, "quaternion .* length 1, has 0"),
         ({"X_BH": np.array([0.9, 0, 0, 0, 0, 0, 0])}, "length 1, has 0.9"),

@@ -13,7 +13,7 @@ from pydrake.systems.framework import LeafSystem
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.device.backend import DeviceReading, Fault, GateState
+from drake_haptics.device.backend import DeviceReading, Fault, GateState, check_reading
 from drake_haptics.systems.device.device_io import DeviceIo
 
 
@@ -155,7 +155,7 @@ def test_a_handle_that_is_nowhere_ends_the_simulation():
     [
         ({"X_BH": [1.0, 0, 0, 0, 0, 0, 0]}, "X_BH .* must be 7 finite numbers in"),
         ({"V_BH": np.zeros(3)}, "V_BH .* must be 6 finite numbers"),
-        ({"F_Ho_B": None}, "F_Ho_B .* must be 6 .* is None"),
+        ({"F_Ho_B": None}, "F_Ho_B .* must be 6 numbers in .* is None"),
         ({"X_BH": np.zeros(7)}, "quaternion in X_BH .* length 1, has 0"),
         ({"X_BH": 2 * make_reading().X_BH}, "quaternion in X_BH .* length 1, has 2"),
     ],
@@ -165,6 +165,13 @@ def test_a_later_reading_that_is_invalid_is_told_as_the_first_would_be(wrong, wo
     diagram, _ = make_diagram(backend)
     with pytest.raises(ValueError, match=words):
         Simulator(diagram).AdvanceTo(PERIOD)
+
+
+def test_the_wrench_that_a_device_reports_need_not_be_finite():
+    reading = replace(make_reading(), F_Ho_B=np.full(6, np.nan))
+    check_reading(reading)
+    diagram, _ = make_diagram(ScriptedDevice(lambda _: reading), first=reading)
+    Simulator(diagram).AdvanceTo(PERIOD)
 
 
 def test_the_period_must_be_positive():
