@@ -19,7 +19,7 @@ from drake_haptics.geometry.mesh.placement import (
     describe_origin_beside,
     find_origin_beside,
 )
-from drake_haptics.geometry.mesh.report import length
+from drake_haptics.geometry.mesh.report import Severity, length
 from drake_haptics.geometry.mesh.topology import winding_numbers
 from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
 from drake_haptics.loop.builder import HapticDiagram
@@ -48,6 +48,7 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
     return [
         *_make_size_warnings(haptic),
         *_make_open_mesh_warnings(haptic),
+        *_make_decimation_warnings(haptic),
         *make_tolerance_warnings(
             calc_first_touch(haptic.scene.contact),
             "the tool",
@@ -61,15 +62,22 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
     ]
 
 
+def _list_parts(
+    haptic: HapticDiagram,
+) -> list[tuple[str, Tool | EnvironmentObject, Decomposition]]:
+    """Returns key, description and pieces of the tool, then of the objects."""
+    objects = zip(haptic.scene.environment, haptic.environment, strict=True)
+    return [
+        ("tool", haptic.scene.tool, haptic.tool),
+        *((f"environment[{i}]", *one) for i, one in enumerate(objects)),
+    ]
+
+
 def _make_size_warnings(haptic: HapticDiagram) -> list[str]:
     """Returns sentences about meshes that are probably in another unit."""
-    scene = haptic.scene
-    objects = zip(scene.environment, haptic.environment, strict=True)
-    sentences = [
-        _make_size_warning("tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
-    ] + [
-        _make_size_warning(f"environment[{i}]", item, part, LARGEST_USUAL_EXTENT_M)
-        for i, (item, part) in enumerate(objects)
+    tool, *objects = _list_parts(haptic)
+    sentences = [_make_size_warning(*tool, _LARGEST_USUAL_TOOL_M)] + [
+        _make_size_warning(*item, LARGEST_USUAL_EXTENT_M) for item in objects
     ]
     return [sentence for sentence in sentences if sentence]
 
@@ -93,20 +101,26 @@ def _make_size_warning(
 
 def _make_open_mesh_warnings(haptic: HapticDiagram) -> list[str]:
     """Returns sentences about open meshes that are probably meant to be solids."""
-    scene = haptic.scene
-    parts = [("tool", scene.tool, haptic.tool)] + [
-        (f"environment[{i}]", item, part)
-        for i, (item, part) in enumerate(
-            zip(scene.environment, haptic.environment, strict=True)
-        )
-    ]
     return [
         f"{key}: {Path(item.mesh).name} is open: {report.one_sided_triangles:,} of"
         f" {count(report.triangles, 'triangle')} bound no solid, so that a tool can get"
         " behind them, and their pieces are many and flat; drake-haptics check lists"
         " the holes"
-        for key, item, part in parts
+        for key, item, part in _list_parts(haptic)
         if (report := part.mesh.report).one_sided_triangles
+    ]
+
+
+def _make_decimation_warnings(haptic: HapticDiagram) -> list[str]:
+    """Returns sentences about meshes that have lost their shape by decimation."""
+    touch_m = calc_first_touch(haptic.scene.contact)
+    return [
+        f"{key}: {Path(item.mesh).name} is {finding.message}: {finding.action}"
+        for key, item, part in _list_parts(haptic)
+        for finding in part.mesh.report.findings
+        if finding.code == "decimated"
+        and finding.severity is Severity.QUESTION
+        and part.mesh.report.decimation_error_m > touch_m
     ]
 
 

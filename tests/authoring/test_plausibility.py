@@ -57,6 +57,24 @@ def test_a_mesh_with_a_hole_is_asked_for(tmp_path):
     assert question.startswith("tool: torn.obj is open: 11 of 11 triangles bound no")
 
 
+def test_a_mesh_that_has_lost_its_shape_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    # A ball of 20 mm; its 36 triangles are up to 3 mm from it.
+    scene.tool.mesh = write(tmp_path, "ball", trimesh.creation.icosphere(3, 0.01))
+    for max_triangles, tolerance_m, is_asked in [
+        (600, 1e-3, False),
+        (36, 1e-3, True),
+        (36, 4e-3, False),
+    ]:
+        scene.tool.max_triangles = max_triangles
+        scene.contact.tolerance_m = tolerance_m
+        asked = [question for question in ask(scene) if "decimated" in question]
+        assert bool(asked) == is_asked
+        if asked:
+            assert asked[0].startswith("tool: ball.obj is decimated from 1,280 to 36")
+            assert asked[0].endswith("take a larger max_triangles")
+
+
 def test_a_tolerance_in_millimeters_is_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     scene.contact.tolerance_m = 2.0

@@ -23,6 +23,8 @@ from drake_haptics.geometry.mesh.report import Finding, Severity, length
 # Numbers of counts that are tried; the first one usually works.
 _TRIES_BELOW = 12
 _GROWTH_ABOVE = 1.1
+# Share of the longest side; a cup loses its walls beyond.
+_LARGEST_USUAL_ERROR = 0.05
 # Options of meshoptimizer: none, and SimplifyRegularize, which collapses other edges.
 _OPTIONS = (0, 16)
 
@@ -31,7 +33,8 @@ def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
     """Returns the mesh with at most `max_triangles`, as close to it as they allow.
 
     Closed parts stay closed, and no solid is lost. The report of the result has the
-    `decimation_error_m` and the finding "decimated".
+    `decimation_error_m` and the finding "decimated", which is a question if the error
+    is more than 5 % of the longest side.
 
     Args:
         mesh: Mesh from `load_mesh` or `Mesh.from_arrays`. It is returned unchanged if
@@ -140,13 +143,21 @@ def _report_error(mesh: Mesh, fewer: Mesh) -> Mesh:
     error_m = _core.surface_distance(
         mesh.vertices, mesh.triangles, fewer.vertices, fewer.triangles
     )
+    extent_m = max(mesh.report.extent)
+    is_large = error_m > _LARGEST_USUAL_ERROR * extent_m
     finding = Finding(
         "decimated",
-        Severity.NOTE,
+        Severity.QUESTION if is_large else Severity.NOTE,
         len(fewer.triangles),
         f"decimated from {len(mesh.triangles):,} to"
         f" {count(len(fewer.triangles), 'triangle')}",
-        f"the surface is within {length(error_m)} of the original one",
+        f"the surface is within {length(error_m)} of the original one"
+        + (
+            f", which is {length(extent_m)} wide; to keep its shape, take a larger"
+            " max_triangles"
+            if is_large
+            else ""
+        ),
     )
     findings = (*mesh.report.findings, finding)
     report = replace(

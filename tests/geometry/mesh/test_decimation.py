@@ -10,6 +10,7 @@ from drake_haptics import _core
 from drake_haptics.common.errors import MeshError
 from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.report import Severity
 
 
 def shape(name):
@@ -72,7 +73,19 @@ def test_the_report_tells_what_was_done():
     (finding,) = (f for f in report.findings if f.code == "decimated")
     assert "from 504 to 200 triangles" in finding.message
     assert "mm of the original" in finding.action
+    assert finding.severity is Severity.NOTE
     assert not report.unclean
+
+
+def test_an_error_that_is_large_beside_the_mesh_is_asked_about():
+    mesh = shape("cup")
+    report = decimate(mesh, 20).report
+    (finding,) = (f for f in report.findings if f.code == "decimated")
+    assert report.decimation_error_m > 0.2 * max(mesh.report.extent)
+    assert finding.severity is Severity.QUESTION
+    assert finding.action.endswith(
+        "mm wide; to keep its shape, take a larger max_triangles"
+    )
     assert type(report).from_dict(report.to_dict()) == report
 
 
