@@ -106,6 +106,7 @@ def test_a_name_of_several_bodies_is_refused():
 @pytest.mark.parametrize(
     ("scoped", "expected"),
     [
+        (["left::hand", "right::hand"], ["left_hand", "right_hand"]),
         (
             ["m::box", "n::box", "k::m_box"],
             ["m::box", "n_box", "m_box"],
@@ -115,9 +116,9 @@ def test_a_name_of_several_bodies_is_refused():
             ["a_b::c", "a::b_c", "d_c", "d_b_c"],
         ),
     ],
-    ids=["with a body's own name", "with each other"],
+    ids=["by these alone", "clash with a body", "clash with each other"],
 )
-def test_names_with_their_models_that_clash_are_told_apart(scoped, expected):
+def test_equal_names_are_told_apart_by_their_models(scoped, expected):
     scene = PlantScene()
     scene.add("tool", BALL)
     for item in scoped:
@@ -155,16 +156,7 @@ def test_names_with_their_models_that_clash_are_told_apart(scoped, expected):
     ]
     # Both balls are polytopes within a chord error of 0.1 mm.
     np.testing.assert_allclose(nearest_m, gaps_m, rtol=0, atol=2e-4)
-    _, objects = make_rendered_bodies(
-        scene.plant,
-        scene.scene_graph.model_inspector(),
-        scene.plant.GetBodyByName("tool"),
-        bodies,
-        role=Role.kProximity,
-        chord_error_m=1e-3,
-        progress=None,
-    )
-    assert [item.name for item in objects] == expected
+    assert [item.name for item in rendering.objects] == expected
 
 
 def test_the_environment_is_all_that_the_tool_can_meet(scene):
@@ -208,28 +200,6 @@ def test_what_is_welded_to_the_world_is_posed_and_the_rest_is_not():
     np.testing.assert_allclose(poses["table"].translation(), [0.1, 0.2, 0.3])
     np.testing.assert_allclose(poses["cup"].translation(), [0.1, 0.2, 0.8])
     np.testing.assert_allclose(poses["world"].translation(), np.zeros(3))
-
-
-def test_equal_names_are_told_apart_by_their_models():
-    scene = PlantScene()
-    scene.add("tool", BALL)
-    bodies = []
-    for model in ("left", "right"):
-        instance = scene.plant.AddModelInstance(model)
-        inertia = SpatialInertia.SolidSphereWithMass(1, 1)
-        bodies.append(scene.plant.AddRigidBody("hand", instance, inertia))
-        scene.touchable(bodies[-1], BALL)
-    scene.finalize()
-    _, objects = make_rendered_bodies(
-        scene.plant,
-        scene.scene_graph.model_inspector(),
-        scene.plant.GetBodyByName("tool"),
-        bodies,
-        role=Role.kProximity,
-        chord_error_m=1e-3,
-        progress=None,
-    )
-    assert [item.name for item in objects] == ["left_hand", "right_hand"]
 
 
 def test_what_cannot_be_is_refused_by_name(scene):
