@@ -137,6 +137,7 @@ _DISTURBANCE = 1e-6
 # A mode is followed until it has changed by this factor.
 _FOLLOWED = 1e4
 _FEWEST_PERIODS = 20
+_MOST_PERIODS = 300
 _WINDOW = 10  # periods
 
 
@@ -145,8 +146,6 @@ def measure_growth(
     context: Context,
     eigenvectors: tuple[np.ndarray, np.ndarray],
     period_s: float,
-    *,
-    periods: int = 300,
 ) -> float:
     """Returns the factor by which a mode grows per period in simulation.
 
@@ -160,7 +159,6 @@ def measure_growth(
         eigenvectors: Right and left eigenvector of the mode, (n,) each, over [x_c; all
             discrete groups], of any length.
         period_s: T, s.
-        periods: Largest number of periods to simulate.
 
     Raises:
         ValueError: After a few periods the disturbance has vanished or is no longer
@@ -174,7 +172,7 @@ def measure_growth(
     runs = [make_simulator(clone) for clone in contexts]
     start_s = context.get_time()
     logarithms = [math.log(abs(np.vdot(left, disturbance)))]
-    for k in range(1, periods + 1):
+    for k in range(1, _MOST_PERIODS + 1):
         for run in runs:
             run.AdvanceTo(start_s + k * period_s)
         at_rest, disturbed = (get_state(run.get_context()) for run in runs)
