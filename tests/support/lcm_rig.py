@@ -85,6 +85,7 @@ def add_host(builder, lcm, law):
     )
     for output, input in [
         (statuses.get_output_port(), receiver.GetInputPort("lcmt_haptic_status")),
+        (statuses.get_output_port(), sender.GetInputPort("lcmt_haptic_status")),
         (receiver.GetOutputPort("X_BH"), law.get_input_port()),
         (law.get_output_port(), sender.GetInputPort("F_Ho_B")),
         (sender.GetOutputPort("lcmt_haptic_command"), commands.get_input_port()),

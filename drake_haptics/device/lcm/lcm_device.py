@@ -38,7 +38,8 @@ COMMAND_CHANNEL = "HAPTIC_COMMAND"
 # Given an unusable URL, LCM only prints a line on stderr and then does nothing.
 _URL = r"(memq://|udpm://2(2[4-9]|3\d)(\.\d{1,3}){3}:\d{1,5}(\?\S+)?)?"
 _LONGEST_TTL_S = 10.0
-_SILENT_S = 0.25
+# A device that has sent nothing for longer is at fault for its host.
+SILENT_S = 0.25
 # Number of releases at the end, so that one of them gets through.
 _CLOSING_RELEASES = 3
 
@@ -224,7 +225,7 @@ class LcmDevice(DeviceBackend):
         """
         if not self._is_closed:
             self._lcm.HandleSubscriptions(0)
-            if self._reading and self._clock() - self._heard_s > _SILENT_S:
+            if self._reading and self._clock() - self._heard_s > SILENT_S:
                 self._reading = make_silent(self._reading)
                 self._heard_s = math.inf
                 self._handshake.fall_silent()

@@ -16,6 +16,7 @@ from lcm_rig import (
     make_spring,
 )
 from pydrake.lcm import DrakeLcm
+from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import DiscreteTimeDelay
 
@@ -245,6 +246,43 @@ def test_a_command_is_released_at_first_and_while_it_is_not_enabled():
     for value, enable in [(0.0, False), (1.0, True)]:
         sender.GetInputPort("enable").FixValue(context, [value])
         assert send(0.06).enable is enable
+
+
+def test_a_command_enables_no_force_on_a_device_that_is_silent_until_asked():
+    sender = HapticCommandSender(PERIOD_S)
+    simulator = Simulator(sender)
+    context = simulator.get_mutable_context()
+    sender.GetInputPort("F_Ho_B").FixValue(context, np.ones(6))
+    enable = sender.GetInputPort("enable").FixValue(context, [1.0])
+    status = sender.GetInputPort("lcmt_haptic_status").FixValue(
+        context, lcmt_haptic_status()
+    )
+
+    def run(duration_s, sequence):
+        """Returns whether each command enables; without a number, in silence."""
+        enables = []
+        for _ in range(round(duration_s / PERIOD_S)):
+            if sequence is not None:
+                sequence += 1
+                status.GetMutableData().set_value(
+                    lcmt_haptic_status(boot=1, sequence=sequence)
+                )
+            simulator.AdvanceTo(context.get_time() + PERIOD_S)
+            enables.append(
+                sender.GetOutputPort("lcmt_haptic_command").Eval(context).enable
+            )
+        return enables
+
+    assert not any(run(0.1, None)), "before the first status"
+    assert all(run(0.5, 0)[1:])
+    silent = run(0.5, None)
+    assert sum(silent) == pytest.approx(0.25 / PERIOD_S, abs=2)
+    assert not any(silent[260:])
+    assert not any(run(0.5, 1000)), "until it is enabled again"
+    enable.GetMutableData().get_mutable_value().SetFromVector([0.0])
+    assert not any(run(0.01, 2000))
+    enable.GetMutableData().get_mutable_value().SetFromVector([1.0])
+    assert all(run(0.1, 3000))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.75])
