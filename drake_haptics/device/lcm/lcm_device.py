@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import re
 import secrets
@@ -42,6 +43,9 @@ _LONGEST_TTL_S = 10.0
 SILENT_S = 0.25
 # Number of releases at the end, so that one of them gets through.
 _CLOSING_RELEASES = 3
+
+
+_logger = logging.getLogger(__name__)
 
 
 class _Phase(Enum):
@@ -150,6 +154,9 @@ class LcmDevice(DeviceBackend):
     rules by a `HostHandshake`. It has no thread: `read` receives messages and `write`
     sends them, and both must be called in every tick.
 
+    A second device on the channel looks like one that restarts again and again, so that
+    no force is shown; a logged warning tells of it once.
+
     The slopes of a command are not sent, so that the wrench is constant between
     commands.
     """
@@ -180,6 +187,7 @@ class LcmDevice(DeviceBackend):
         if not 0.0 < ttl_s <= _LONGEST_TTL_S:
             raise ValueError(f"ttl_s must be in (0, {_LONGEST_TTL_S:g}], is {ttl_s}")
         self._lcm = lcm
+        self._status_channel = status_channel
         self._channel = command_channel
         self._time_to_live = round(1e6 * ttl_s)
         self._clock = clock
@@ -189,6 +197,8 @@ class LcmDevice(DeviceBackend):
         self._status: lcmt_haptic_status | None = None
         self._reading: DeviceReading | None = None
         self._heard_s = -math.inf
+        self._boots: set[int] = set()
+        self._is_shared = False
         self._received = self._lost = self._rejected = 0
         self._is_closed = False
         lcm.Subscribe(status_channel, self._receive)
@@ -290,6 +300,15 @@ class LcmDevice(DeviceBackend):
         if find_flaw(status) or step <= 0:
             self._rejected += 1
             return
+        if not is_same_run and status.boot in self._boots and not self._is_shared:
+            # A device that has restarted does not come back with its earlier boot.
+            self._is_shared = True
+            _logger.warning(
+                "two devices send on %s, and their poses are mixed: stop one of them,"
+                " or give each an LCM URL of its own",
+                self._status_channel,
+            )
+        self._boots.add(status.boot)
         self._lost += step - 1
         self._received += 1
         self._status = status

@@ -145,7 +145,19 @@ def test_a_host_that_stops_finds_a_fault_that_it_must_leave(loop):
     assert np.diff(shown).max() <= 0.05 * MAX_FORCE_N
 
 
-def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it(loop):
+def test_two_devices_on_one_channel_show_nothing_and_are_told_once(loop, caplog):
+    for k in range(1, 400):
+        status = lcmt_haptic_status(boot=1, sequence=k, pose=REST)
+        loop.lcm.Publish("HAPTIC_STATUS", status.encode())
+        shown = loop.press(1, push_N=1.0)
+    assert not shown.any() and loop.device.read().gate is GateState.FAULT
+    [record] = caplog.records
+    assert "two devices send on HAPTIC_STATUS" in record.getMessage()
+
+
+def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it(
+    loop, caplog
+):
     before = loop.device.read()
     loop.start_device()
     assert not loop.press(600, push_N=1.0).any()
@@ -156,6 +168,7 @@ def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it(loop)
     shown = loop.press(600, push_N=1.0)
     assert loop.state == (GateState.ACTIVE, Fault.NONE)
     assert shown.max() <= MAX_FORCE_N
+    assert not caplog.records
 
 
 def fall_silent(loop):
