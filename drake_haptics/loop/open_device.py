@@ -54,7 +54,10 @@ def open_device(
         TickLogError: A log cannot be read.
         OSError: A log cannot be opened.
     """
-    parts = urlsplit(address)
+    try:
+        parts = urlsplit(address)
+    except ValueError as error:  # A bracket of an IPv6 host is missing.
+        raise DeviceError(f"device {address!r}: {error}") from error
     if parts.scheme not in _OPENERS:
         near = difflib.get_close_matches(parts.scheme or address, _OPENERS, n=1)
         hint = f"; did you mean '{near[0]}:'?" if near else ""

@@ -34,6 +34,12 @@ def test_a_port_must_be_one(scene, port):
         open_device(f"udp://127.0.0.1:{port}", scene)
 
 
+@pytest.mark.parametrize("kind", ["udp", "haply"])
+def test_an_ipv6_host_needs_both_brackets(scene, kind):
+    with pytest.raises(DeviceError, match=rf"device '{kind}://\[::1:7400': .*IPv6"):
+        open_device(f"{kind}://[::1:7400", scene)
+
+
 def test_the_number_of_an_ipv6_host_is_an_address_of_a_service_too(scene):
     # Nothing listens at this port, so that the attempt is told with its address.
     with pytest.raises(DeviceError, match=r"ws://\[::1\]:1: (?!.*valid URI)"):
