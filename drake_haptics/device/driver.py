@@ -372,7 +372,7 @@ class DriverSocket:
         self._socket.setblocking(False)
         try:
             self._socket.bind((host, port))
-        except OSError as error:
+        except (OSError, TypeError) as error:  # no host can have that name
             self._socket.close()
             raise HapticsError(_explain(error, host, port)) from error
 
@@ -408,8 +408,10 @@ class DriverSocket:
         self._socket.close()
 
 
-def _explain(error: OSError, host: str, port: int) -> str:
+def _explain(error: OSError | TypeError, host: str, port: int) -> str:
     """Returns advice about an address that is not available."""
+    if isinstance(error, TypeError):
+        error = OSError(str(error))
     if error.errno == errno.EADDRINUSE:
         return (
             f"port {port} is taken, perhaps by another `drake-haptics device`:"

@@ -59,7 +59,7 @@ def test_a_port_that_is_taken_is_the_users_error(driver):
         DriverSocket("127.0.0.1", port)
 
 
-@pytest.mark.parametrize("address", ["192.0.2.1", "no.such.host.invalid"])
+@pytest.mark.parametrize("address", ["192.0.2.1", "no.such.host.invalid", "ä..b"])
 def test_an_address_of_another_machine_is_the_users_error(address):
     with pytest.raises(HapticsError, match=f"^bind {address}: .*127.0.0.1"):
         DriverSocket(address, 0)
