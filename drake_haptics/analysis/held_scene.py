@@ -16,6 +16,7 @@ from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.preconditions import check_conversion
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.simulated_device import make_hand_path, place_base
@@ -120,10 +121,12 @@ def hold_scene(
             0 to 1.
 
     Raises:
-        ValueError: The time is not on the path, the tool does not come to rest, or a
-            part of the scene has no derivatives.
+        ValueError: A time is negative or not on the path, the tool does not come to
+            rest, or a part of the scene has no derivatives.
         SceneError: The scene cannot be built.
     """
+    # Drake ends the program for a time in the past.
+    check_at_least(0, settle_s=settle_s)
     report = progress or (lambda what, share: None)
     # Otherwise the search for an equilibrium would fail without a reason.
     check_conversion(build_without_scene_warnings(scene).diagram)

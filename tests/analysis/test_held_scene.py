@@ -53,6 +53,12 @@ def test_a_time_off_the_path_is_refused(hammer, time_s):
         stop_hand(hammer, time_s)
 
 
+@pytest.mark.parametrize("settle_s", [-1.0, np.nan])
+def test_no_time_to_settle_is_negative(hammer, settle_s):
+    with pytest.raises(ValueError, match=r"settle_s must be at least 0 and finite"):
+        hold_scene(hammer, settle_s=settle_s)
+
+
 def test_the_firmest_contact_is_when_the_hand_aims_deepest(hammer):
     # The lowest waypoints are at 0.35, 1.05 and 1.75 s; the arm lags behind the hand.
     time_s = find_firmest_contact(hammer)
