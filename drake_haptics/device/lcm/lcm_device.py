@@ -9,6 +9,7 @@ import secrets
 import time
 from collections.abc import Callable
 from enum import Enum
+from ipaddress import IPv4Address
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,8 @@ STATUS_CHANNEL = "HAPTIC_STATUS"
 COMMAND_CHANNEL = "HAPTIC_COMMAND"
 
 # Given an unusable URL, LCM only prints a line on stderr and then does nothing.
-_URL = r"(memq://|udpm://2(2[4-9]|3\d)(\.\d{1,3}){3}:\d{1,5}(\?\S+)?)?"
+_URL = r"(memq://|udpm://(?P<host>[\d.]+):(?P<port>\d{1,5})(\?\S+)?)?"
+_LAST_PORT = 65535
 _LONGEST_TTL_S = 10.0
 # A device that has sent nothing for longer is at fault for its host.
 SILENT_S = 0.25
@@ -182,10 +184,20 @@ class LcmDevice(DeviceBackend):
             clock: Reads the time, s.
 
         Raises:
-            ValueError: The time is out of range.
+            ValueError: The time is out of range, or the channels are not two names.
         """
         if not 0.0 < ttl_s <= _LONGEST_TTL_S:
             raise ValueError(f"ttl_s must be in (0, {_LONGEST_TTL_S:g}], is {ttl_s}")
+        # Drake ends the program for a name that is empty.
+        if (
+            not status_channel
+            or not command_channel
+            or status_channel == command_channel
+        ):
+            raise ValueError(
+                "status_channel and command_channel must be two names, are"
+                f" {status_channel!r} and {command_channel!r}"
+            )
         self._lcm = lcm
         self._status_channel = status_channel
         self._channel = command_channel
@@ -215,7 +227,7 @@ class LcmDevice(DeviceBackend):
         Raises:
             DeviceError: LCM has no such transport, or cannot use the network.
         """
-        if not re.fullmatch(_URL, url):
+        if not _is_usable(url):
             raise DeviceError(
                 f"'{url}' is not an LCM URL: give one such as"
                 " udpm://239.255.76.67:7667?ttl=0, with a multicast address"
@@ -327,6 +339,18 @@ class LcmDevice(DeviceBackend):
             gate=gate,
             fault=fault,
         )
+
+
+def _is_usable(url: str) -> bool:
+    """Returns whether LCM has such a transport, and an address for it."""
+    found = re.fullmatch(_URL, url)
+    if found is None or found["host"] is None:
+        return found is not None
+    try:
+        host = IPv4Address(found["host"])
+    except ValueError:
+        return False
+    return host.is_multicast and int(found["port"]) <= _LAST_PORT
 
 
 def _normalize(pose: tuple[float, ...]) -> np.ndarray:

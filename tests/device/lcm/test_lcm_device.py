@@ -294,7 +294,16 @@ def test_losses_are_told_by_the_gaps():
 
 
 @pytest.mark.parametrize(
-    "url", ["udp://1", "udpm://1.2.3.4:7667", "udpm://239.255.76.67", "file://a", "x"]
+    "url",
+    [
+        "udp://1",
+        "udpm://1.2.3.4:7667",
+        "udpm://239.255.76.67",
+        "udpm://239.255.76.67:99999",
+        "udpm://239.255.76.999:7667",
+        "file://a",
+        "x",
+    ],
 )
 def test_a_url_that_lcm_cannot_use(url):
     with pytest.raises(
@@ -314,6 +323,12 @@ def test_an_address_as_a_person_writes_it():
         assert isinstance(device, LcmDevice)
     with pytest.raises(DeviceError, match="'udp://1' is not an LCM URL"):
         open_device("lcm:udp://1", scene)
+
+
+@pytest.mark.parametrize(("status", "command"), [("", "C"), ("S", ""), ("A", "A")])
+def test_a_channel_for_each_direction(status, command):
+    with pytest.raises(ValueError, match=f"must be two names, are '{status}' and"):
+        LcmDevice(DrakeLcm("memq://"), status_channel=status, command_channel=command)
 
 
 def test_arguments_out_of_range():
