@@ -47,14 +47,16 @@ class HandPath:
         """
         if len(times_s) != len(poses) or not len(poses):
             raise ValueError("a path needs a time for each of one or more poses")
-        if times_s[0] != 0.0 or np.any(np.diff(times_s) <= 0.0):
+        times = np.array(times_s, dtype=float)
+        # Drake ends the program for times that are as good as equal, or no numbers.
+        rises = np.all(np.diff(times) >= np.finfo(float).eps)
+        if times[0] != 0.0 or not rises or not np.isfinite(times[-1]):
             raise ValueError("times must rise from 0 s")
         samples = _align_signs(np.array([pose_to_vector(X) for X in poses]))
         if periodic and len(poses) < 3:
             raise ValueError("a periodic path needs three waypoints or more")
         if periodic and not poses[0].IsNearlyEqualTo(poses[-1], 1e-6):
             raise ValueError("a periodic path must end at the pose it starts with")
-        times = np.array(times_s, dtype=float)
         self._duration_s = float(times[-1])
         cubics = _fit(times, samples, periodic)
         if periodic:
