@@ -1,6 +1,7 @@
 """Values out of range are refused by name, in numbers and in arrays."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -23,3 +24,10 @@ def test_what_is_not_positive_is_refused(value):
 def test_what_is_below_the_least_is_refused(value):
     with pytest.raises(ValueError, match=r"^b must be at least 2 and finite, is "):
         check_at_least(2, a=2, b=value)
+
+
+@pytest.mark.parametrize("value", ["1", None, ["1"], 1j])
+def test_what_is_no_number_is_refused_by_name(value):
+    for check in (check_positive, partial(check_at_least, 0)):
+        with pytest.raises(TypeError, match=r"^b must be a number, is "):
+            check(a=1.0, b=value)
