@@ -12,6 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from drake_haptics.common.value_checks import check_at_least, check_positive
+
 # Hands that explore by touch are slower.
 _FASTEST_HAND_M_PER_S = 1.0
 
@@ -36,7 +38,12 @@ def calc_passive_stiffness(
 
     It is the bound of `calc_passive_damping`, solved for K, and zero if B alone is not
     passive.
+
+    Raises:
+        ValueError: The period is not positive, or the physical damping or the delay is
+            negative.
     """
+    _check_loop(held_damping, period_s, delay_s)
     left = held_damping - abs(damping)
     return max(0.0, left) / _calc_age(period_s, delay_s)
 
@@ -48,7 +55,12 @@ def calc_stable_stiffness(
 
     K < (b + B) / (T/2 + t_d) (Gil et al. 2004; Hulin et al. 2009), to first order in
     b T/m and B T/m: for dampings that are small against m/T.
+
+    Raises:
+        ValueError: The period is not positive, or the physical damping or the delay is
+            negative.
     """
+    _check_loop(held_damping, period_s, delay_s)
     return (held_damping + damping) / (period_s / 2.0 + delay_s)
 
 
@@ -129,6 +141,11 @@ def calc_returnable_energy(
     """
     elastic = sum(load**2 / (2.0 * k) for load, k in springs if k > 0.0)
     return elastic + 0.5 * tool_mass_kg * _FASTEST_HAND_M_PER_S**2 + lift_J
+
+
+def _check_loop(held_damping: float, period_s: float, delay_s: float) -> None:
+    check_positive(period_s=period_s)
+    check_at_least(0, held_damping=held_damping, delay_s=delay_s)
 
 
 def _calc_age(period_s: float, delay_s: float) -> float:

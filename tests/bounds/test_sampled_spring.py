@@ -174,3 +174,20 @@ def test_returnable_energy_is_that_of_springs_motion_and_weight():
     springs = [(8.5, 800.0), (0.188, 1.0), (8.5, 0.0)]
     expected = 8.5**2 / 1600 + 0.188**2 / 2 + 0.5 * 0.1 + 0.2
     assert calc_returnable_energy(springs, 0.1, 0.2) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("calc", [calc_passive_stiffness, calc_stable_stiffness])
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        ({"period_s": 0.0}, "period_s must be positive and finite, is 0.0"),
+        ({"period_s": -T}, "period_s must be positive and finite, is -0.001"),
+        ({"delay_s": -T}, "delay_s must be at least 0 and finite, is -0.001"),
+        ({"delay_s": np.nan}, "delay_s must be at least 0 and finite, is nan"),
+        ({"held_damping": -1.0}, "held_damping must be at least 0 and finite, is -1.0"),
+    ],
+)
+def test_no_bound_is_given_for_what_is_no_loop(calc, wrong, complaint):
+    loop = {"held_damping": 1.0, "damping": 1.0, "period_s": T, "delay_s": 0.0}
+    with pytest.raises(ValueError, match=f"^{complaint}$"):
+        calc(**loop | wrong)
