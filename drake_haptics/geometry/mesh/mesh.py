@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.geometry.mesh.checks import (
     check_branching,
     check_components,
@@ -273,9 +274,17 @@ def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
         mass_kg: Mass, kg.
 
     Raises:
-        ValueError: The mass is not positive, or the rotational inertia is not.
+        ValueError: The mass is not positive.
+        MeshError: The mesh is as thin as a line, about which it has no inertia.
     """
-    return RigidToolDynamics(mass_kg, *calc_mass_properties(mesh, mass_kg))
+    p_TTcm, I_TTcm_T = calc_mass_properties(mesh, mass_kg)
+    try:
+        return RigidToolDynamics(mass_kg, p_TTcm, I_TTcm_T)
+    except ValueError as error:
+        raise MeshError(
+            f"{mesh.report.source}: as a tool of {mass_kg:g} kg, {error}. Is the mesh"
+            " as thin as a line, or its scale wrong?"
+        ) from error
 
 
 def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.ndarray]:
@@ -290,7 +299,11 @@ def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.nda
 
     Returns:
         p_MMcm (3,), m, and I_MMcm_M (3, 3), kg·m².
+
+    Raises:
+        ValueError: The mass is not positive.
     """
+    check_positive(mass_kg=mass_kg)
     # Near the mesh, since about a far origin all digits would cancel: at a multiple of
     # a power of two, by which vertices move without rounding.
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)

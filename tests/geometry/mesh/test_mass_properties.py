@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from drake_haptics.common.errors import MeshError
 from drake_haptics.geometry.mesh.mesh import (
     Mesh,
     calc_mass_properties,
@@ -86,3 +87,18 @@ def test_a_tool_turns_as_its_shape_does():
     state[0], wrench_model[:3] = 1.0, 1e-3
     turned = tool.step(state, wrench_model, 1e-3)
     np.testing.assert_allclose(turned[7:10], 1e-6 / principal, rtol=1e-6)
+
+
+@pytest.mark.parametrize("mass_kg", [0.0, -1.0, np.nan])
+@pytest.mark.parametrize("calc", [calc_mass_properties, make_tool_dynamics])
+def test_a_mass_is_positive(calc, mass_kg):
+    box = intake(trimesh.creation.box([0.1, 0.1, 0.1]))
+    with pytest.raises(ValueError, match=r"^mass_kg must be positive and finite, is"):
+        calc(box, mass_kg)
+
+
+def test_a_tool_as_thin_as_a_line_is_told_of_its_mesh():
+    corners = [[0, 0, 0], [0.1, 0, 0], [0.05, 1e-12, 0]]
+    line = Mesh.from_arrays(corners, [[0, 1, 2]], name="wire.obj")
+    with pytest.raises(MeshError, match=r"^wire\.obj: as a tool of .* thin as a line"):
+        make_tool_dynamics(line, MASS)
