@@ -46,6 +46,8 @@ def resolve_package_url(file: str | os.PathLike[str]) -> str:
 def describe_missing(path: str | os.PathLike[str]) -> str:
     """Returns where a file was looked for, and which one may have been meant."""
     path = Path(path)
+    if path.is_dir():
+        return f"{path}: is a folder, not a file"
     where = "" if path.is_absolute() else f"; looked in {Path.cwd() / path.parent}"
     words = f"{path}: no such file{where}"
     if not path.parent.is_dir():

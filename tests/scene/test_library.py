@@ -38,11 +38,13 @@ def test_a_name_is_found_before_a_file_and_a_file_is_itself(tmp_path, monkeypatc
         ("cup.obj", r"no mesh: cup\.obj: no such file; .*; 'cup' is shipped"),
         ("mime.stl", r"no such file; .*did you mean 'mine\.stl'"),
         ("no/cup.obj", r"there is no folder no"),
+        ("parts.obj", r"^no mesh: parts\.obj: is a folder, not a file$"),
     ],
 )
 def test_what_may_have_been_meant_is_said(name, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("mine.stl").touch()
+    Path("parts.obj").mkdir()
     with pytest.raises(MeshError, match=said):
         find_mesh(name)
 
