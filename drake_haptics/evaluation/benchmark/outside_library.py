@@ -87,8 +87,9 @@ def load_library(file: Path) -> type[OutsideLibrary]:
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except (ImportError, OSError, SyntaxError) as error:
-        raise HapticsError(f"{file} cannot be imported: {error}") from error
+    except Exception as error:  # the file may do anything
+        what = f"{type(error).__name__}: {error}"
+        raise HapticsError(f"{file} cannot be imported: {what}") from error
     found = [
         value
         for value in vars(module).values()

@@ -150,6 +150,7 @@ def test_its_loop_does_what_the_native_one_does(tmp_path: Path) -> None:
         ("", "must define one subclass of OutsideLibrary"),
         ("import a_library_that_nobody_has", "cannot be imported"),
         ("class", "cannot be imported"),
+        ("{}['speed']", "cannot be imported: KeyError: 'speed'"),
         (TOY.replace("TOO_FAR", "0") + "\nclass Other(Toy):\n    pass", "it has 2"),
         (TOY.replace("TOO_FAR", "0").replace("def query", "def ask"), "it has 0"),
     ],
