@@ -111,6 +111,8 @@ def describe_device(figures: Mapping[str, Any]) -> str:
 
 # Smaller energies are round-off: a nanojoule lifts a milligram by 0.1 mm.
 _ROUNDING_J = 1e-9
+# So many contacts mostly mean that faces of many triangles lie on each other.
+_MANY_CONTACTS = 100
 # Number of latest ticks whose lateness is in the line.
 _LATEST = 1000
 
@@ -218,7 +220,9 @@ def make_summary(figures: dict[str, Any]) -> Table:
     table.add_row(
         "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
     )
-    table.add_row("whole tick", _describe_times(figures["tick_us"]))
+    table.add_row(
+        "whole tick", _describe_times(figures["tick_us"]) + _explain_slow_ticks(figures)
+    )
     table.add_row("contact query", _describe_times(figures["contact_query_us"]))
     if late := figures["lateness_us"]:
         table.add_row(
@@ -253,6 +257,17 @@ def make_summary(figures: dict[str, Any]) -> Table:
     if figures["energy_J"]:
         table.add_row("energy", _describe_energy(figures["energy_J"]))
     return table
+
+
+def _explain_slow_ticks(figures: dict[str, Any]) -> str:
+    """Returns what to do if many ticks take longer than their period, or nothing."""
+    period_us = 1e6 * figures["duration_s"] / max(1, figures["ticks"])
+    if figures["tick_us"]["p99"] <= period_us:
+        return ""
+    advice = "docs/troubleshooting.md, Late ticks"
+    if figures["contacts"]["max"] >= _MANY_CONTACTS:
+        advice = f"fewer triangles (max_triangles) make fewer contacts; {advice}"
+    return f": too slow for ticks of {period_us:.0f} µs; {advice}"
 
 
 def _describe_times(us: Mapping[str, float]) -> str:

@@ -171,6 +171,21 @@ def test_a_force_without_penetration_is_explained(haptic):
         assert ("came within 0.420 mm" in text.getvalue()) == is_explained
 
 
+def test_ticks_longer_than_their_period_are_told_of_with_what_helps(haptic):
+    _, figures = run_with_status(haptic, terminal=False)
+    for p99_us, most, is_slow, is_many in [
+        (999.0, 500, False, False),
+        (1001.0, 4, True, False),
+        (1001.0, 500, True, True),
+    ]:
+        text = io.StringIO()
+        figures["tick_us"]["p99"] = p99_us
+        figures["contacts"]["max"] = most
+        Console(file=text, width=320).print(make_summary(figures))
+        assert ("too slow for ticks of 1000 µs" in text.getvalue()) == is_slow
+        assert ("max_triangles" in text.getvalue()) == is_many
+
+
 def energy_line(haptic, **changes):
     """The summary of a run in which a part has other books."""
     _, figures = run_with_status(haptic, terminal=False)
