@@ -62,7 +62,8 @@ class GripMargins:
         grip: Name of the grip.
         stiffness: Largest stable stiffness over the chosen one, with the chosen B.
         gain: The largest stable factor on both K and B.
-        largest_delay_s: The longest stable delay, s.
+        largest_delay_s: The longest stable delay, s, as from
+            `calc_largest_delay`.
         held_damping: b of device and hand, N·s/m.
         is_passive: Whether b is enough for passivity.
     """

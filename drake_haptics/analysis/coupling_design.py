@@ -206,8 +206,8 @@ def suggest_coupling(
     Raises:
         SceneError: There is no such preset.
         ValueError: There is no such grip, the rate, mass or inertia is not positive,
-            the delay or a damping is negative, the margin is not above 1, or no
-            stiffness has it.
+            the delay or a damping is negative, the delay is above 1,000 periods, the
+            margin is not above 1, or no stiffness has it.
     """
     _check(rate_hz, delay_s, margin, hand)
     handle, preset = _read_device(device)

@@ -28,6 +28,11 @@ _SOFTEST_ALPHA = 1e-6
 _RELATIVE_TOLERANCE = 1e-10
 # Delays that differ by less than this part of a period are equal.
 _DELAY_TOLERANCE = 1e-9
+# Each period of delay is a row of the matrix, whose eigenvalues then take 2 s.
+_MOST_PERIODS = 1000
+# The search for the longest delay ends here: beyond, its first estimate may be wrong by
+# more than two periods.
+_MOST_SEARCHED = 500
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,8 @@ class SampledWall:
         period_s: T, s.
         stiffness: K of the wall, N/m.
         wall_damping: B of the wall, N·s/m.
-        delay_s: t_d, delay of the force on top of the hold, s; not only whole periods.
+        delay_s: t_d, delay of the force on top of the hold, s; not only whole periods,
+            and at most 1,000 of them.
         hand_mass: m_h, kg; it moves with the handle.
         hand_damping: b_h, N·s/m.
         hand_stiffness: k_h, N/m.
@@ -65,8 +71,8 @@ class SampledWall:
         """Checks the values.
 
         Raises:
-            ValueError: The mass or the period is not positive, or another value is
-                negative or not a number.
+            ValueError: The mass or the period is not positive, another value is
+                negative or not a number, or the delay is too long.
         """
         check_positive(mass=self.mass, period_s=self.period_s)
         check_at_least(
@@ -79,6 +85,12 @@ class SampledWall:
             hand_damping=self.hand_damping,
             hand_stiffness=self.hand_stiffness,
         )
+        if self.delay_s > (_MOST_PERIODS + _DELAY_TOLERANCE) * self.period_s:
+            raise ValueError(
+                f"delay_s must be at most {_MOST_PERIODS:,} periods of"
+                f" {self.period_s:g} s, is {self.delay_s:g}; give it in seconds, or"
+                " calculate the wall with a longer period"
+            )
 
     def make_step_matrix(self) -> np.ndarray:
         """Returns A of z[k+1] = A z[k], just before each sample.
@@ -191,7 +203,8 @@ def calc_largest_delay(wall: SampledWall) -> float:
     periods before that, it tries longer delays, a quarter of a period apart, until one
     is unstable, and finds the edge to a relative 1e-10. The result is zero if the wall
     is unstable without delay, and infinite if its loop gain is below one at every
-    frequency, as for a soft wall in a firm hand.
+    frequency, as for a soft wall in a firm hand. It is 500 periods if that and more is
+    stable.
 
     Args:
         wall: The wall, whose delay is not used.
@@ -201,9 +214,12 @@ def calc_largest_delay(wall: SampledWall) -> float:
     periods = _estimate_delay(wall)
     if periods == math.inf:
         return math.inf
+    first = max(0, math.floor(periods) - 2)
+    if first >= _MOST_SEARCHED:
+        return _MOST_SEARCHED * wall.period_s
     return _find_edge(
         lambda delay_s: replace(wall, delay_s=delay_s),
-        start=max(0, math.floor(periods) - 2) * wall.period_s,
+        start=first * wall.period_s,
         step=lambda delay_s: 0.25 * wall.period_s,
     )
 

@@ -45,7 +45,8 @@ class DelayBounds:
         law: The law of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).
         passive: The largest passive K with the same B, (n,); 0 if B alone is not
             passive.
-        largest_delay_s: The longest delay with which `wall` is stable, s.
+        largest_delay_s: The longest delay with which `wall` is stable, s; that of
+            `calc_largest_delay`.
     """
 
     wall: SampledWall
@@ -94,7 +95,7 @@ def calc_delay_bounds(
         delays_s: Delays, s. Defaults to 0 to 10 periods.
 
     Raises:
-        ValueError: There is no delay, or a negative one.
+        ValueError: There is no delay, or one is negative or above 1,000 periods.
     """
     if delays_s is None:
         delays_s = np.linspace(0.0, _PERIODS * wall.period_s, _POINTS)

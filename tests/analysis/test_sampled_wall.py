@@ -180,6 +180,15 @@ def test_a_stiff_wall_bears_no_delay_and_a_soft_one_in_a_hand_any():
         assert replace(soft, delay_s=delay * T).calc_spectral_radius() < 1.0
 
 
+def test_the_search_for_the_longest_delay_ends_at_a_stable_one():
+    wall = SampledWall(0.1, 0.5, 1e-5, stiffness=20.0, wall_damping=0.2)
+    delay = calc_largest_delay(wall)
+    assert delay == pytest.approx(500 * wall.period_s)
+    assert replace(wall, delay_s=delay).calc_spectral_radius() < 1.0
+    # The same wall with a longer period, whose search does not end there.
+    assert delay < calc_largest_delay(replace(wall, period_s=1.25e-4))
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -188,6 +197,10 @@ def test_a_stiff_wall_bears_no_delay_and_a_soft_one_in_a_hand_any():
         ({"damping": -1.0}, "damping must be at least 0 and finite, is -1"),
         ({"delay_s": -1e-3}, "delay_s must be at least 0 and finite, is -0.001"),
         ({"hand_mass": math.inf}, "hand_mass must be at least 0 and finite, is inf"),
+        (
+            {"delay_s": 10.0},
+            r"at most 1,000 periods of 0\.001 s, is 10; give it in sec",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused(change, message):
