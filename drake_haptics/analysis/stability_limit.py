@@ -44,7 +44,7 @@ def calc_growth(eigenvalues: np.ndarray) -> float:
 
     Args:
         eigenvalues: (n,) eigenvalues of one period. Those at 1, to 1e-6, are neutral
-            and left out.
+            and left out. The growth is NaN if one of them is.
     """
     return float(np.abs(drop_neutral(eigenvalues)).max(initial=0.0))
 
@@ -55,7 +55,7 @@ def drop_neutral(eigenvalues: np.ndarray) -> np.ndarray:
     Those belong to states that nothing drives back: adhesion points of friction, a
     balance of energy, the length of a quaternion.
     """
-    return np.where(np.abs(eigenvalues - 1.0) > NEUTRAL, eigenvalues, 0.0)
+    return np.where(np.abs(eigenvalues - 1.0) <= NEUTRAL, 0.0, eigenvalues)
 
 
 def find_stability_limit(

@@ -68,3 +68,8 @@ def test_neutral_motions_do_not_grow():
     assert calc_growth(np.array([1.0, 1.0 - 1e-9j, 0.9, -0.95])) == pytest.approx(0.95)
     assert calc_growth(np.array([1.0, 1.00001])) == pytest.approx(1.00001)
     assert calc_growth(np.array([1.0 + 0j])) == 0.0
+
+
+@pytest.mark.parametrize("unknown", [math.nan, complex(math.nan, 0.0)])
+def test_growth_of_an_unknown_eigenvalue_is_unknown(unknown):
+    assert math.isnan(calc_growth(np.array([0.5, unknown])))
