@@ -12,6 +12,7 @@ from typing import Any, cast
 from pydrake.systems.framework import Context
 
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
@@ -287,7 +288,11 @@ class LiveValueRamp:
 
         Args:
             period_s: The tick, s.
+
+        Raises:
+            ValueError: The period is not positive.
         """
+        check_positive(period_s=period_s)
         self._steps = max(1, round(GLIDE_S / period_s))
         self._keys: Sequence[LiveKey] = ()
         self._start: dict[str, float] = {}

@@ -11,6 +11,7 @@ import numpy as np
 
 from drake_haptics.common.one_line import count
 from drake_haptics.common.real_time import RealTimePacer
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
@@ -97,7 +98,11 @@ class RunStatistics:
         Args:
             period_s: Simulated time of a tick, s.
             pace: Pacer of the run, if there is one.
+
+        Raises:
+            ValueError: The period is not positive.
         """
+        check_positive(period_s=period_s)
         self._pace = pace
         self._ledger: EnergyLedger | None = None
         self._period_s = period_s

@@ -77,9 +77,10 @@ class TickEnd(DifferentiableSystem):
             period_s: Time from tick to tick, s.
 
         Raises:
-            RuntimeError: The period is not positive.
+            ValueError: The period is not positive.
         """
         super().__init__()
+        check_positive(period_s=period_s)
         self._meter = meter
         # Publish events come after all other work of the previous tick.
         self.DeclarePeriodicPublishEvent(period_s, 0.0, self._publish)

@@ -8,6 +8,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.common.value_checks import check_positive
 
 
 class BodyOfProxy(LeafSystem):
@@ -46,8 +47,12 @@ class BodyOfProxy(LeafSystem):
 
         Args:
             period_s: Duration of a step, s.
+
+        Raises:
+            ValueError: The period is not positive.
         """
         super().__init__()
+        check_positive(period_s=period_s)
         self._period_s = period_s
         self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
         self._V_WT = self.DeclareVectorInputPort("V_WT", 6)

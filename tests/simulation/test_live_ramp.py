@@ -111,3 +111,9 @@ def test_all_that_is_live_glides():
         value = item.read(glide(scene, goal, after=STEPS // 2).apply(goal))
         assert item.read(goal) < value < item.read(scene)
         assert glide(scene, goal).apply(scene) == goal
+
+
+@pytest.mark.parametrize("period_s", [0.0, -1e-3])
+def test_a_period_that_is_not_positive_is_refused(period_s):
+    with pytest.raises(ValueError, match="period_s must be positive and finite"):
+        LiveValueRamp(period_s)

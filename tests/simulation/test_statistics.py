@@ -125,3 +125,9 @@ def test_a_report_is_json():
     statistics = RunStatistics(1e-3)
     add(statistics, distance_m=np.float64(-1e-3), status=LIMITED)
     assert json.loads(json.dumps(statistics.to_dict()))["ticks"] == 1
+
+
+@pytest.mark.parametrize("period_s", [0.0, -1e-3])
+def test_a_period_that_is_not_positive_is_refused(period_s):
+    with pytest.raises(ValueError, match="period_s must be positive and finite"):
+        RunStatistics(period_s)

@@ -135,3 +135,9 @@ def test_a_loop_that_may_shed_load_can_be_differentiated():
     twin = builder.Build().ToAutoDiffXd()
     state = twin.CreateDefaultContext().get_discrete_state_vector().CopyToVector()
     assert [x.value() for x in state] == [0.0, 1.0, 0.0]
+
+
+@pytest.mark.parametrize("period_s", [0.0, -1e-3])
+def test_a_period_that_is_not_positive_is_refused(period_s):
+    with pytest.raises(ValueError, match="period_s must be positive and finite"):
+        TickEnd(TickMeter(), period_s)

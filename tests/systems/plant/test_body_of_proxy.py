@@ -60,3 +60,9 @@ def test_the_wrench_is_the_same_about_any_point(is_held):
         found[:3] + np.cross(p_WTo, found[3:]),
         wrench[:3] + np.cross(p_WPo, wrench[3:]),
     )
+
+
+@pytest.mark.parametrize("period_s", [0.0, -1e-3])
+def test_a_period_that_is_not_positive_is_refused(period_s):
+    with pytest.raises(ValueError, match="period_s must be positive and finite"):
+        BodyOfProxy(period_s)
