@@ -24,6 +24,7 @@ from drake_haptics.cli.status_line import (
 )
 from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.loop.drivers import make_simulated_driver
+from drake_haptics.scene.validation import RATES_HZ
 
 
 @click.command(cls=CommandWithExamples)
@@ -45,7 +46,7 @@ from drake_haptics.loop.drivers import make_simulated_driver
 )
 @click.option(
     "--rate",
-    type=FiniteRange(10, 10000),
+    type=FiniteRange(*RATES_HZ),
     metavar="HZ",
     help="Ticks per second.  [default: the scene's]",
 )

@@ -371,7 +371,7 @@ class DeviceParameters:
         base: X_WB, the pose of the device's base in the world. Defaults to the pose
             that puts the middle of the workspace at the middle of the hand's path; the
             handle of a device that is not simulated then begins where the path does.
-        rate_hz: Ticks per second of the haptic loop, Hz.
+        rate_hz: Ticks per second of the haptic loop, Hz, from 10 to 100,000.
         servo_rate_hz: Rate at which contact is solved and the tool stepped, Hz;
             `rate_hz` times a whole number. It may exceed `rate_hz` only for
             `contact.law: constraint` with a simulated device or one behind `udp://`,

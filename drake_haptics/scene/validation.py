@@ -42,6 +42,8 @@ _FARTHEST_M = 1e9
 _MOST_STEPS = 2**31 - 1
 # A second at 1 kHz. The simulated device keeps numbers for each of these ticks.
 _MOST_TICKS = 1000
+RATES_HZ = (10, 100_000)
+"""Least and largest rate of a haptic loop, Hz."""
 # A hand at 0.1 m/s moves 5 mm per query, farther than contacts are searched for.
 _LEAST_QUERY_RATE_HZ = 20.0
 # Depth, in tolerances, at which the force is eleven times that at the surface. The
@@ -87,7 +89,8 @@ def check_values(scene: Scene) -> None:
         _check_pose(item.pose, f"{where}.pose")
         _check_material(item.material, f"{where}.material", scene.effects)
     _check_contact(scene.contact)
-    require_all_positive(scene.device, "device", ["rate_hz"])
+    _check_rate(scene.device, "rate_hz")
+    _check_rate(scene.device, "servo_rate_hz")
     if scene.device.servo_rate_hz is not None:
         check_servo_rate(
             scene.device.servo_rate_hz,
@@ -278,6 +281,17 @@ def check_servo_rate(
         where,
         f"is {rate_hz:g}, and a servo does not tell the loop where friction holds the"
         " tool: take effects.friction out, or this rate",
+    )
+
+
+def _check_rate(device: DeviceParameters, key: str) -> None:
+    """Raises SceneError unless a rate, if given, is one at which a loop may run."""
+    value = getattr(device, key)
+    least, most = RATES_HZ
+    require(
+        value is None or least <= value <= most,
+        f"device.{key}",
+        f"must be from {least} to {most:,}, is {value}",
     )
 
 

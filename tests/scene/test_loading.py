@@ -235,7 +235,13 @@ def test_a_pose_is_drakes():
         ("hand:", "effects: {gravity:}\nhand:", r"gravity: is empty; write {} for"),
         ("hand:", "effects: {gravity: 9.81}\nhand:", r"gravity: expected keys"),
         ("hand:", "coupling: {damping_Ns_per_m: -1}\nhand:", r"coupling\.damping"),
-        ("hand:", "device: {rate_hz: 0}\nhand:", r"device\.rate_hz must be pos"),
+        ("hand:", "device: {rate_hz: 0}\nhand:", r"device\.rate_hz must be from 10 to"),
+        (
+            "hand:",
+            "device: {rate_hz: 1e9}\nhand:",
+            r"device\.rate_hz must be from 10 to 100,000, is 1000000000",
+        ),
+        ("hand:", "device: {servo_rate_hz: 1e9}\nhand:", r"servo_rate_hz .* 100,000"),
         ("hand:", "device: {max_force_N: -1}\nhand:", r"device\.max_force_N must not"),
         ("hand:", "device: 3\nhand:", r"device: expected keys, found 3"),
         (
