@@ -39,13 +39,14 @@ class ReplayedHandle(Diagram):
         """Constructs the system.
 
         Args:
-            X_WH: (n, 7) poses of the handle at each tick, n at least 1.
+            X_WH: (n, 7) poses of the handle at each tick, n at least 1; quaternions of
+                any length but zero.
             V_WH: (n, 6) spatial velocities of the handle.
             period_s: The tick, s.
 
         Raises:
-            ValueError: There are no ticks, the arrays differ in length, or the period
-                is not positive.
+            ValueError: There are no ticks, the arrays differ in length or have the
+                wrong width, a quaternion is zero, or the period is not positive.
         """
         super().__init__()
         check_positive(period_s=period_s)
@@ -53,6 +54,17 @@ class ReplayedHandle(Diagram):
             raise ValueError(
                 f"X_WH and V_WH must have equally many ticks, at least one, have"
                 f" {len(X_WH)} and {len(V_WH)}"
+            )
+        for name, rows, width in [("X_WH", X_WH, 7), ("V_WH", V_WH, 6)]:
+            if np.shape(rows)[1:] != (width,):
+                raise ValueError(
+                    f"{name} must have shape (n, {width}), has {np.shape(rows)}"
+                )
+        # A handle that was lost is NaN, which the loop reports when it comes to it.
+        zero = np.flatnonzero(~np.any(np.asarray(X_WH)[:, :4], axis=1))
+        if len(zero):
+            raise ValueError(
+                f"X_WH[{zero[0]}] has a quaternion of zero, which no pose has"
             )
         builder = DiagramBuilder()
         states = np.hstack([X_WH, V_WH])

@@ -55,3 +55,14 @@ def test_what_cannot_be_replayed_is_refused():
         ReplayedHandle(X_WH[:0], V_WH[:0], 1e-3)
     with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         ReplayedHandle(X_WH, V_WH, 0.0)
+    with pytest.raises(
+        ValueError, match=r"X_WH must have shape \(n, 7\), has \(2, 6\)"
+    ):
+        ReplayedHandle(X_WH[:, :6], V_WH, 1e-3)
+    with pytest.raises(
+        ValueError, match=r"V_WH must have shape \(n, 6\), has \(2, 7\)"
+    ):
+        ReplayedHandle(X_WH, X_WH, 1e-3)
+    X_WH[1, :4] = 0.0
+    with pytest.raises(ValueError, match=r"X_WH\[1\] has a quaternion of zero"):
+        ReplayedHandle(X_WH, V_WH, 1e-3)
