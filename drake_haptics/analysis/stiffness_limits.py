@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from scipy.optimize import brentq
 
@@ -116,8 +116,17 @@ def find_stiffness_limits(
         progress: Function that is called with the share done, from 0 to 1.
 
     Raises:
-        ValueError: The scene's coupling has no stiffness of that kind.
+        ValueError: There is no such kind or body, or the scene's coupling has no
+            stiffness of that kind.
     """
+    for name, word, known in [
+        ("kind", kind, get_args(Kind)),
+        ("against", against, get_args(Against)),
+    ]:
+        if word not in known:
+            raise ValueError(
+                f"{name} must be {' or '.join(map(repr, known))}, is {word!r}"
+            )
     report = progress or (lambda share: None)
     stiffness_name, damping_name = _GAINS[kind]
     stiffness = getattr(held.scene.coupling, stiffness_name)

@@ -106,6 +106,18 @@ def test_a_coupling_without_that_stiffness_has_no_limit(held, kind):
 
 
 @pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["coupling"], "kind must be 'translation' or 'rotation', is 'coupling'"),
+        (["rotation", "wall"], "against must be 'this contact' or .*, is 'wall'"),
+    ],
+)
+def test_a_kind_or_a_body_that_is_none_is_refused(held, arguments, message):
+    with pytest.raises(ValueError, match=message):
+        find_stiffness_limits(held, *arguments)
+
+
+@pytest.mark.parametrize(
     ("value", "text"),
     [
         (249069.7, "249,070"),
