@@ -127,7 +127,7 @@ def is_preset_file(preset: str) -> bool:
     return preset.endswith(_SUFFIXES)
 
 
-def load_device_preset(name_or_path: str) -> DevicePreset:
+def load_device_preset(name_or_path: str | Path) -> DevicePreset:
     """Reads a shipped preset, or a file of your own.
 
     Args:
@@ -141,15 +141,16 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
             the file cannot be read, or has an unknown key or an invalid value, and the
             message names the file and the key.
     """
-    if is_preset_file(name_or_path):
-        return _read_once(Path(name_or_path))
+    name = str(name_or_path)
+    if is_preset_file(name):
+        return _read_once(Path(name))
     presets = list_device_presets()
-    if name_or_path not in presets:
+    if name not in presets:
         raise SceneError(
-            f"device.preset: '{name_or_path}' is not one of those that are shipped, nor"
-            f" a preset file (.yaml); {make_hint(name_or_path, presets)}"
+            f"device.preset: '{name}' is not one of those that are shipped, nor"
+            f" a preset file (.yaml); {make_hint(name, presets)}"
         )
-    return _read_once(presets[name_or_path])
+    return _read_once(presets[name])
 
 
 def _read_once(path: Path) -> DevicePreset:

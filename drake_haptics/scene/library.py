@@ -23,7 +23,7 @@ def list_meshes() -> dict[str, Path]:
     return {path.stem: path for path in sorted((FOLDER / "meshes").glob("*.obj"))}
 
 
-def find_scene(name_or_path: str) -> Path:
+def find_scene(name_or_path: str | Path) -> Path:
     """Returns the file of a shipped scene's name, or the path itself.
 
     Raises:
@@ -40,16 +40,16 @@ def find_scene(name_or_path: str) -> Path:
             f"{name_or_path} is a program, not a scene: commands take scenes; in a"
             " program of your own call drake_haptics.analysis (docs/stability.md)"
         )
-    return _find("scene", name_or_path, list_scenes(), SceneError)
+    return _find("scene", str(name_or_path), list_scenes(), SceneError)
 
 
-def find_mesh(name_or_path: str) -> Path:
+def find_mesh(name_or_path: str | Path) -> Path:
     """Returns the file of a shipped mesh's name, like "cup", or the path itself.
 
     Raises:
         MeshError: There is no such mesh or file; the message lists the shipped names.
     """
-    return _find("mesh", name_or_path, list_meshes(), MeshError)
+    return _find("mesh", str(name_or_path), list_meshes(), MeshError)
 
 
 def _find(

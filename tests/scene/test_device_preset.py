@@ -42,6 +42,12 @@ def test_the_figures_are_those_of_the_source_for_the_device_of_that_name(name):
     assert preset.has_model == (name == PREMIUM)
 
 
+def test_a_preset_is_found_by_its_path_too():
+    assert load_device_preset(list_device_presets()[PREMIUM]) == load_device_preset(
+        PREMIUM
+    )
+
+
 def test_no_two_presets_are_one_device():
     descriptions = [
         load_device_preset(name).description for name in list_device_presets()

@@ -49,6 +49,13 @@ def test_what_may_have_been_meant_is_said(name, said, tmp_path, monkeypatch):
         find_mesh(name)
 
 
+def test_a_path_is_as_good_as_a_text():
+    assert find_scene(Path("cup_spoon")) == find_scene("cup_spoon")
+    assert find_mesh(MODELS / "meshes" / "cup.obj").samefile(find_mesh("cup"))
+    with pytest.raises(SceneError, match=r"did you mean 'cup_spoon'"):
+        find_scene(Path("cup_spon"))
+
+
 def test_a_scene_is_no_mesh():
     with pytest.raises(SceneError, match=r"is a mesh, not a scene"):
         find_scene("cup.obj")
