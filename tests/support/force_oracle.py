@@ -51,10 +51,9 @@ def sameness(contacts: _core.ContactSet, pushing: np.ndarray, t: float) -> np.nd
     n, p = contacts.nhat_BA_W[pushing], contacts.p_WC[pushing]
     w = t - contacts.distance[pushing]
     flushness, extent = contacts.flushness[pushing], contacts.extent[pushing]
-    reach = flushness * extent / (LAYER_SHARE * t) if t > 0 else 0 * w
-    place = fade(
-        np.linalg.norm(p[:, None] - p[None], axis=2), t + np.add.outer(reach, reach)
-    )
+    reach = flushness * extent / (2 * LAYER_SHARE * t) if t > 0 else 0 * w
+    apart = np.linalg.norm(p[:, None] - p[None], axis=2) - np.add.outer(reach, reach)
+    place = fade(np.maximum(0, apart), t)
     turn = np.maximum(0, 1 - n @ n.T)
     flush = np.outer(flushness, flushness)
     depth = fade(np.abs(w[:, None] - w[None]), SAME_DEPTH * np.maximum.outer(w, w))

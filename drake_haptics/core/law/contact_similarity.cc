@@ -35,10 +35,10 @@ T Fade(const T& distance, const T& width) {
   return width > 0.0 ? std::max<T>(0.0, T(1 - distance / width)) : T(0);
 }
 
-// Reach of a flush face or edge, m: the length of an edge of its extent.
+// Reach of a flush face or edge, m: half the length of an edge of its extent.
 template <typename T>
 T Reach(const ContactOf<T>& contact, double tolerance) {
-  return contact.flushness * contact.extent / PressureLayer(tolerance);
+  return contact.flushness * contact.extent / (2 * PressureLayer(tolerance));
 }
 
 // Degree to which two contacts are parts of one constraint, 0 to 1.
@@ -53,10 +53,10 @@ T Similarity(const ContactOf<T>& a, const ContactOf<T>& b, double tolerance) {
   if (turn >= kSameDirection) return T(0);
   const T in_one_plane = Fade<T>(turn, kSamePlane) * a.flushness * b.flushness;
   if (kFullSimilarity * same_depth * in_one_plane >= 1.0) return T(1);
-  const T in_one_place =
-      Fade<T>(turn, kSameDirection) *
-      Fade<T>((a.p_WC - b.p_WC).norm(),
-              tolerance + Reach(a, tolerance) + Reach(b, tolerance));
+  const T apart =
+      (a.p_WC - b.p_WC).norm() - (Reach(a, tolerance) + Reach(b, tolerance));
+  const T in_one_place = Fade<T>(turn, kSameDirection) *
+                         Fade<T>(std::max<T>(0.0, apart), T(tolerance));
   return std::min<T>(1.0, T(kFullSimilarity * same_depth *
                             std::max(in_one_plane, in_one_place)));
 }
