@@ -76,7 +76,7 @@ class CockpitRun:
         self._changes = SceneChanges(scene)
         with ExitStack() as stack:
             X_WC = look_from_the_front(p_WH, site.workspace_radius_m)
-            self._page = LivePage(meshcat, X_WC, listener)
+            self._page = LivePage(meshcat, X_WC, listener, is_aimed=True)
             stack.enter_context(closing(self._page))
             advice = CouplingAdvice(scene)
             self._holder = HandleHolder(

@@ -128,7 +128,9 @@ class FrameMaker:
             "height_m": height_m,
             "axes": {
                 name: turn_into_view(axis, packet.R_WC) for name, axis in _AXES.items()
-            },
+            }
+            if math.isfinite(packet.p_WC[0])
+            else None,
             "late_us": _describe(self._late_s, {"p50": 0.5, "p99": 0.99, "max": 1.0}),
             "tick_us": _describe(
                 self._tick_s, {"median": 0.5, "p99": 0.99, "max": 1.0}

@@ -26,22 +26,33 @@ class PageCamera:
 
     Attributes:
         X_WC: Pose of the camera: x right, y down, z away.
-        numbers: (12,) R_WC row by row and p_WC, m.
+        numbers: (12,) R_WC row by row and p_WC, m; p_WC is NaN before the pose of a
+            picture is known.
     """
 
-    def __init__(self, meshcat: Meshcat, X_WC: RigidTransform):
-        """Starts at a pose."""
-        self._meshcat = meshcat
+    def __init__(self, meshcat: Meshcat, X_WC: RigidTransform, *, is_aimed: bool):
+        """Starts at a pose; `is_aimed` tells that the run aims the camera elsewhere."""
+        self._meshcat, self._is_aimed = meshcat, is_aimed
+        self._heard = X_WC
+        self._is_open = False
+        self.numbers: tuple[float, ...]
         self._set(X_WC)
+        if is_aimed:
+            self.numbers = (*self.numbers[:9], *[np.nan] * 3)
 
     def look(self) -> None:
         """Reads the newest pose that the page has sent."""
         X_WC = self._meshcat.GetTrackedCameraPose()
-        if X_WC is None or X_WC.IsExactlyEqualTo(self.X_WC):
+        # A page that opens sends Meshcat's own camera, before it knows the aimed one.
+        is_early = self._is_aimed and not self._is_open
+        self._is_open = X_WC is not None
+        if X_WC is None or X_WC.IsExactlyEqualTo(self._heard):
             return
         if not np.abs(X_WC.translation()).max() <= _FARTHEST_M:
             return
-        self._set(X_WC)
+        self._heard = X_WC
+        if not is_early:
+            self._set(X_WC)
         # A page sends the camera of its previous picture, so make it draw another.
         self._meshcat.SetTransform(_NUDGE, RigidTransform())
 
@@ -87,13 +98,21 @@ class LivePage:
         meshcat: Meshcat,
         X_WC: RigidTransform,
         listener: socket.socket | None = None,
+        *,
+        is_aimed: bool = False,
     ):
         """Starts the page's process, without waiting for it.
+
+        Args:
+            meshcat: The Meshcat that the page shows.
+            X_WC: Pose of the camera until a page sends its own.
+            listener: The page's port, from `open_page_port`.
+            is_aimed: Whether the run aims the camera elsewhere once the page is open.
 
         Raises:
             HapticsError: No port is available.
         """
-        self.camera = PageCamera(meshcat, X_WC)
+        self.camera = PageCamera(meshcat, X_WC, is_aimed=is_aimed)
         # Makes the Meshcat report the camera of this page.
         self.meshcat_url = f"{meshcat.web_url()}/?tracked_camera=on"
         self._link = PageLink(meshcat.web_url(), listener)

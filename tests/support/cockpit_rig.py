@@ -79,7 +79,7 @@ class CockpitRig:
             lambda: self.ticks * self.period_s,
         )
         monkeypatch.setattr(
-            "drake_haptics.cockpit.cockpit_run.LivePage", lambda *_: self.page
+            "drake_haptics.cockpit.cockpit_run.LivePage", lambda *_, **__: self.page
         )
         self.period_s = 1.0 / scene.device.rate_hz
         self.ticks = 0

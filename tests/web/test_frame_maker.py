@@ -70,6 +70,11 @@ def test_what_is_not_before_the_camera_has_no_place(depth_m):
     assert FrameMaker().make(packet([], p_WH=p_WH))["handle"] is None
 
 
+def test_of_a_camera_that_is_not_known_nothing_is_said():
+    frame = FrameMaker().make(packet([], p_WC=(math.nan,) * 3))
+    assert frame["axes"] is frame["height_m"] is frame["handle"] is None
+
+
 def test_the_trace_has_the_largest_of_every_4_ms():
     frames, maker = [], FrameMaker()
     forces = 8.0 * np.random.default_rng(1).random(99)
