@@ -12,6 +12,7 @@ from config_reference import FILES
 from config_rules import find_rules
 
 from drake_haptics import BuildHapticDiagram, HapticsError, load_scene, run
+from drake_haptics.authoring.plausibility import make_start_warnings
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -54,13 +55,15 @@ def test_the_example_runs_and_is_felt():
     assert run(haptic, duration_s=1.2).to_dict()["max_force_N"] > 0.1
 
 
-def test_the_small_example_can_be_built(tmp_path):
+def test_the_small_example_comes_from_outside_and_is_felt(tmp_path):
     page = (DOCS / "reference" / "scene-file.md").read_text()
     (text,) = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
     meshes = DOCS.parent / "models" / "meshes"
     file = tmp_path / "scene.yaml"
     file.write_text(re.sub(r"\w+\.obj", lambda mesh: str(meshes / mesh[0]), text))
-    BuildHapticDiagram(load_scene(file))
+    haptic = BuildHapticDiagram(load_scene(file))
+    assert not make_start_warnings(haptic)
+    assert 1.0 < run(haptic, duration_s=1.5).max_force_N < 8.0, "below the limit"
 
 
 def test_the_words_are_those_that_are_known():
