@@ -10,7 +10,7 @@ import re
 import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
 
@@ -141,8 +141,12 @@ def require_folder(
     Raises:
         HapticsError: The file cannot be written, see `require_writable`, or another
             option writes it.
+        click.BadParameter: It is - of an option that does not write to stdout.
     """
-    if file is not None and str(file) != "-":
+    is_stdout = str(file) == "-"
+    if is_stdout and not cast(click.Path, option.type).allow_dash:
+        raise click.BadParameter("cannot go to stdout: name a file.")
+    if file is not None and not is_stdout:
         require_writable(Path(file), option.opts[0])
         for other, path in _list_written(ctx).items():
             if path.absolute() == Path(file).absolute():

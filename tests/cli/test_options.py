@@ -97,6 +97,22 @@ def test_no_two_options_write_one_file(folder, arguments, options):
     assert not (folder / "a").exists()
 
 
+@pytest.mark.parametrize(
+    ("arguments", "option"),
+    [
+        ([*RUN, "--log", "-"], "--log"),
+        (["decompose", "pen.obj", "--html", "-"], "--html"),
+    ],
+)
+def test_what_cannot_go_to_stdout_is_not_written_to_a_file_of_that_name(
+    folder, arguments, option
+):
+    result = invoke(*arguments)
+    assert result.exit_code == 2
+    assert f"'{option}': cannot go to stdout: name a file." in result.stderr
+    assert not (folder / "-").exists()
+
+
 def test_an_earlier_output_is_written_anew():
     for _ in range(2):
         assert invoke(*RUN, "--json", "a.json", "--log", "a.tick").exit_code == 0
