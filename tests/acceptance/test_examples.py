@@ -82,8 +82,8 @@ def test_a_softer_wall_is_penetrated_deeper(run):
     assert depths_mm[0] < depths_mm[1] < depths_mm[2]
     tolerance_mm = 1e3 * load_scene(find_scene("torus_peg")).contact.tolerance_m
     for stiffness, force_N, depth_mm in (map(float, row) for row in rows):
-        # Contacts that are one constraint differ in depth by up to 5 %.
-        deepest_mm = 1e3 * force_N / stiffness / 0.95
+        # Two springs in a row; contact also carries the tool's inertia, less than 5 %.
+        deepest_mm = 1.05 * 1e3 * force_N / stiffness
         assert depth_mm <= max(0.0, deepest_mm - tolerance_mm) + 0.01
     # Softer than the coupling of 800 N/m: most of the hand's way goes into the contact.
     assert depths_mm[2] > 2.0
