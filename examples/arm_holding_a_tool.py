@@ -7,7 +7,7 @@ Drake's point contact takes the convex hull of a mesh: the ring would have no ho
 where the arm comes to rest, free and against the ring, to tell what contact changes.
 """
 
-import sys
+import argparse
 
 import numpy as np
 from pydrake.geometry import Meshcat
@@ -21,6 +21,9 @@ from pydrake.visualization import AddDefaultVisualization
 from drake_haptics import AddHapticRendering, ContactParameters, find_mesh
 from drake_haptics.analysis import find_equilibrium, find_modes, linearize_sampled
 
+parser = argparse.ArgumentParser(description="An arm leans a pen on a ring.")
+parser.add_argument("--meshcat", action="store_true", help="show it in the browser")
+is_shown = parser.parse_args().meshcat
 # A ring that is fixed, and an arm whose two links turn about z; it moves a pen along z.
 MODEL = f"""
 <mujoco model="arm_and_ring">
@@ -63,7 +66,7 @@ controller = builder.AddSystem(
 builder.Connect(plant.get_state_output_port(), controller.get_input_port(0))
 builder.Connect(controller.get_output_port(), plant.get_actuation_input_port())
 builder.ExportInput(controller.get_input_port(1), "goal")
-if "--meshcat" in sys.argv:
+if is_shown:
     AddDefaultVisualization(builder, meshcat := Meshcat())
 diagram = builder.Build()
 
@@ -72,7 +75,7 @@ simulator = Simulator(diagram)
 root = simulator.get_mutable_context()
 above = np.array([np.pi / 3, -2 * np.pi / 3, 0.0])
 plant.SetPositions(plant.GetMyMutableContextFromRoot(root), above)
-if "--meshcat" in sys.argv:
+if is_shown:
     simulator.set_target_realtime_rate(1.0)
     input(f"Open {meshcat.web_url()} and press Enter here.")
 for name, change in [

@@ -6,7 +6,7 @@ Without SECONDS it runs until Ctrl-C. In the end it tells what the hand has felt
 whether the loop has kept to the clock.
 """
 
-import sys
+import argparse
 from contextlib import suppress
 
 from drake_haptics import (
@@ -20,11 +20,13 @@ from drake_haptics import (
     start_meshcat,
 )
 
+parser = argparse.ArgumentParser(description="A spoon in a cup, in the browser.")
+parser.add_argument("seconds", nargs="?", type=float, help="without it, until Ctrl-C")
+duration_s = parser.parse_args().seconds
 meshcat = start_meshcat()
 haptic = BuildHapticDiagram(load_scene(find_scene("cup_spoon")), meshcat=meshcat)
 configure_camera(meshcat, haptic)
 print(f"Open {meshcat.web_url()}; Ctrl-C ends.")
-duration_s = float(sys.argv[1]) if len(sys.argv) > 1 else None
 clock = RealTimePacer(haptic.period_s)
 statistics = RunStatistics(haptic.period_s, pace=clock)
 with suppress(KeyboardInterrupt):

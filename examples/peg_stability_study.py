@@ -9,7 +9,7 @@ not done again. Pass `executor=distributed.Client(...).get_executor()` to
 `calc_z_width`, and the same study runs on a Dask cluster (docs/stability.md).
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -46,4 +46,7 @@ def main(store: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "peg_stability_study.jsonl"))
+    parser = argparse.ArgumentParser(description="How stiff a peg can be rendered.")
+    default = Path("peg_stability_study.jsonl")
+    parser.add_argument("file", nargs="?", type=Path, default=default)
+    main(parser.parse_args().file)

@@ -49,6 +49,27 @@ def test_example_runs(name, run):
     assert run(name)
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["arm_holding_a_tool.py", "cup_and_spoon.py", "peg_stability_study.py"],
+)
+@pytest.mark.parametrize(("option", "code"), [("--help", 0), ("--nope", 2)])
+def test_an_example_with_arguments_tells_of_them_and_does_nothing_else(
+    name, option, code, tmp_path
+):
+    process = subprocess.run(
+        [sys.executable, EXAMPLES / name, option],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    assert process.returncode == code
+    said = process.stdout if code == 0 else process.stderr
+    assert said.startswith(f"usage: {name}")
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_example_is_short(name):
     assert len((EXAMPLES / name).read_text(encoding="utf-8").splitlines()) < 100
