@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+import numpy as np
 import write_docs
 from bench_samples import EVERYTHING
+from markdown_page import find_blocks
 from page_parts import read_part
 from write_docs import LEFT_OUT, NOTED, PAGE, show_tables, with_figures
 
 from drake_haptics.evaluation.benchmark.benchmark import Effort, make_tables
 from drake_haptics.evaluation.benchmark.libraries.with_drake_haptics import LIBRARIES
+from drake_haptics.evaluation.benchmark.outside_library import load_library
 from drake_haptics.evaluation.benchmark.pair_runs import run_pair
 from drake_haptics.evaluation.benchmark.pair_tables import error_table
 from drake_haptics.evaluation.benchmark.pairs import KINDS, SIZES, make_pair
@@ -107,3 +110,26 @@ def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
     renewed = with_figures(page, EVERYTHING)
     assert "abacus" in read_part(renewed) and "abacus" not in page
     assert renewed.replace(read_part(renewed), "") == page.replace(_SECTION, "")
+
+
+_LIBRARY = """import types
+__version__ = "1"
+Hull = list
+def distance(A, B, X_WA):
+    ways = {"normal_from_B_to_A": [1, 0, 0], "point_A": A[0], "point_B": B[0]}
+    return types.SimpleNamespace(signed_distance=0.5, **ways)
+"""
+
+
+def test_the_file_of_a_library_stands_beside_it(tmp_path, monkeypatch) -> None:
+    """Also where both are in one folder, from which Python imports."""
+    page = PAGE.read_text(encoding="utf-8")
+    (block,) = [b.text for b in find_blocks(page) if b.language == "python"]
+    (tmp_path / "my_library.py").write_text(_LIBRARY)
+    file = tmp_path / block.splitlines()[0].removeprefix("# ")
+    assert not file.exists() and f"--library {file.name}" in page
+    file.write_text(block)
+    monkeypatch.syspath_prepend(tmp_path)
+    library = load_library(file)
+    contact = library([[1.0, 0, 0]], [[0.0, 0, 0]]).query(np.eye(4))
+    assert (library.version, contact.distance) == ("1", 0.5)
