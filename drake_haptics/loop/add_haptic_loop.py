@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 
@@ -20,6 +19,7 @@ from drake_haptics.loop.contact import (
     connect_by_name,
     find_contact_gains,
     find_skins,
+    whole_or_nothing,
 )
 from drake_haptics.loop.effects import (
     EffectSite,
@@ -149,124 +149,114 @@ def AddHapticLoop(
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     sheds_load = load_shedding is not None
     is_chained = in_one_call and not sheds_load and can_chain(objects, contact)
-    if load_shedding is not None:
-        builder.AddNamedSystem("load_shedding", load_shedding)
-    builder.AddNamedSystem("device", device)
-    if is_constraint(contact):
-        check_constraint_law(
-            contact,
-            effects,
-            sheds_load=sheds_load,
-            materials={f"materials[{i}]": item for i, item in enumerate(materials)},
-        )
-        from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
-
-        friction = effects.friction
-        step = ConstraintToolStep(
-            tool,
-            objects,
-            find_skins(contact, materials),
-            tool_dynamics,
-            gains,
-            X_HT,
-            X_WT,
-            period_s,
-            [name for name in forces if name != "friction"],
-            coefficient=find_coefficients(friction, materials) if friction else [],
-            break_away_m=(friction or FrictionParameters()).break_away_m,
-            servo_period_s=servo_period_s,
-            start_servo=_find_servo(device, X_WT, servo_period_s),
-        )
-        builder.AddNamedSystem("constraint_tool_step", step)
-        base = BaseSystems(device, step, step, load_shedding, None)
-        contacts_N_per_m = []
-    else:
-        names = ["coupling", "contact", *forces]
-        base = BaseSystems(
-            device,
-            builder.AddNamedSystem("virtual_coupling", VirtualCoupling(gains, X_HT)),
-            builder.AddNamedSystem(
-                "haptic_tool",
-                HapticTool(
-                    tool_dynamics,
-                    period_s,
-                    names,
-                    X_WT,
-                    enable_chain=is_chained,
-                ),
-            ),
-            load_shedding,
-            add_contact_systems(
-                builder,
-                tool,
-                objects,
+    with whole_or_nothing(builder):
+        if load_shedding is not None:
+            builder.AddNamedSystem("load_shedding", load_shedding)
+        builder.AddNamedSystem("device", device)
+        if is_constraint(contact):
+            check_constraint_law(
                 contact,
                 effects,
-                materials,
+                sheds_load=sheds_load,
+                materials={f"materials[{i}]": item for i, item in enumerate(materials)},
+            )
+            from drake_haptics.systems.tool.constraint_tool_step import (
+                ConstraintToolStep,
+            )
+
+            friction = effects.friction
+            step = ConstraintToolStep(
+                tool,
+                objects,
+                find_skins(contact, materials),
+                tool_dynamics,
+                gains,
+                X_HT,
+                X_WT,
                 period_s,
-                enable_load_shedding=sheds_load,
-                enable_chain=is_chained,
-            ),
-        )
-        stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
-        contacts_N_per_m = stiffness.tolist()
-    _connect_base(builder, base)
-    chain: dict[str, OutputPort] = {}
-    if is_chained:
-        joined = base.virtual_coupling.GetOutputPort("motions_and_gains")
-        found = base.contact_query.GetOutputPort("contact_chain")
-        chain = {"contact_chain": found, "motions_and_gains": joined}
-    # The step of the constraint law includes friction.
-    is_own = base.penalty is None and effects.friction is not None
-    site = EffectSite(
-        effects=replace(effects, friction=None) if is_own else effects,
-        builder=builder,
-        sources=_find_sources(base) | chain,
-        tool=tool,
-        tool_mass_kg=tool_dynamics.mass_kg,
-        p_TTcm=tool_dynamics.p_TTcm.tolist(),
-        objects=objects,
-        materials=materials,
-        period_s=period_s,
-        springs=find_springs(device, gains, contacts_N_per_m),
-    )
-    systems = add_effects(site)
-    sources = {"coupling": base.coupling_model, "contact": base.contact_model}
-    for name in forces:
-        if name == "friction" and is_own:
-            systems = replace(systems, friction=base.haptic_tool)
-            sources[name] = base.haptic_tool.GetOutputPort("friction_model")
+                [name for name in forces if name != "friction"],
+                coefficient=find_coefficients(friction, materials) if friction else [],
+                break_away_m=(friction or FrictionParameters()).break_away_m,
+                servo_period_s=servo_period_s,
+                start_servo=_find_servo(device, X_WT, servo_period_s),
+            )
+            builder.AddNamedSystem("constraint_tool_step", step)
+            base = BaseSystems(device, step, step, load_shedding, None)
+            contacts_N_per_m = []
         else:
-            sources[name] = getattr(systems, name).GetOutputPort("wrench_model")
-    connect_by_name(builder, base.haptic_tool, sources)
-    connect_by_name(builder, base.haptic_tool, chain)
-    if device.wants_slopes and servo_period_s is None:
-        _add_handle_model(builder, base, sources, chain)
-    loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
-    if loop.penalty is not None:
-        connect_by_name(
-            builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
+            names = ["coupling", "contact", *forces]
+            base = BaseSystems(
+                device,
+                builder.AddNamedSystem(
+                    "virtual_coupling", VirtualCoupling(gains, X_HT)
+                ),
+                builder.AddNamedSystem(
+                    "haptic_tool",
+                    HapticTool(
+                        tool_dynamics,
+                        period_s,
+                        names,
+                        X_WT,
+                        enable_chain=is_chained,
+                    ),
+                ),
+                load_shedding,
+                add_contact_systems(
+                    builder,
+                    tool,
+                    objects,
+                    contact,
+                    effects,
+                    materials,
+                    period_s,
+                    enable_load_shedding=sheds_load,
+                    enable_chain=is_chained,
+                ),
+            )
+            stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
+            contacts_N_per_m = stiffness.tolist()
+        _connect_base(builder, base)
+        chain: dict[str, OutputPort] = {}
+        if is_chained:
+            joined = base.virtual_coupling.GetOutputPort("motions_and_gains")
+            found = base.contact_query.GetOutputPort("contact_chain")
+            chain = {"contact_chain": found, "motions_and_gains": joined}
+        # The step of the constraint law includes friction.
+        is_own = base.penalty is None and effects.friction is not None
+        site = EffectSite(
+            effects=replace(effects, friction=None) if is_own else effects,
+            builder=builder,
+            sources=_find_sources(base) | chain,
+            tool=tool,
+            tool_mass_kg=tool_dynamics.mass_kg,
+            p_TTcm=tool_dynamics.p_TTcm.tolist(),
+            objects=objects,
+            materials=materials,
+            period_s=period_s,
+            springs=find_springs(device, gains, contacts_N_per_m),
         )
-    check_names(builder)
-    builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
-    if chain and systems.passivity is None:
-        joined = chain["motions_and_gains"]
-        builder.Connect(joined, device.GetInputPort("coupled_motions"))
+        systems = add_effects(site)
+        sources = {"coupling": base.coupling_model, "contact": base.contact_model}
+        for name in forces:
+            if name == "friction" and is_own:
+                systems = replace(systems, friction=base.haptic_tool)
+                sources[name] = base.haptic_tool.GetOutputPort("friction_model")
+            else:
+                sources[name] = getattr(systems, name).GetOutputPort("wrench_model")
+        connect_by_name(builder, base.haptic_tool, sources)
+        connect_by_name(builder, base.haptic_tool, chain)
+        if device.wants_slopes and servo_period_s is None:
+            _add_handle_model(builder, base, sources, chain)
+        loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
+        if loop.penalty is not None:
+            connect_by_name(
+                builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
+            )
+        builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
+        if chain and systems.passivity is None:
+            joined = chain["motions_and_gains"]
+            builder.Connect(joined, device.GetInputPort("coupled_motions"))
     return loop
-
-
-def check_names(builder: DiagramBuilder) -> None:
-    """Refuses a name that is used twice, at which Drake's `Build` ends the process.
-
-    Raises:
-        ValueError: Two systems of the builder have one name.
-    """
-    counts = Counter(system.get_name() for system in builder.GetSystems())
-    if twice := [name for name, number in counts.items() if number > 1]:
-        raise ValueError(
-            f"builder: has two systems called {', '.join(map(repr, twice))}; build each"
-            " loop or device into a diagram of its own, and add those diagrams to yours"
-        )
 
 
 def check_device_period(device: HapticDevice, *periods_s: float) -> None:

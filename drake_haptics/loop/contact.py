@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -223,6 +225,29 @@ def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:
     if effects.braking is None:
         return contact.tolerance_m
     return max(contact.tolerance_m, effects.braking.distance_m)
+
+
+@contextmanager
+def whole_or_nothing(builder: DiagramBuilder) -> Iterator[None]:
+    """Takes back the systems that were added, if an error ends the block.
+
+    Raises:
+        ValueError: Two systems of the builder have one name, at which Drake's `Build`
+            ends the process.
+    """
+    number = len(builder.GetSystems())
+    try:
+        yield
+        names = Counter(system.get_name() for system in builder.GetSystems())
+        if twice := [repr(name) for name, count in names.items() if count > 1]:
+            raise ValueError(
+                f"builder: has two systems called {', '.join(twice)}; build each loop"
+                " or device into a diagram of its own, and add those diagrams to yours"
+            )
+    except BaseException:
+        for system in builder.GetSystems()[number:]:
+            builder.RemoveSystem(system)
+        raise
 
 
 def connect_by_name(

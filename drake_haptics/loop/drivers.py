@@ -18,7 +18,7 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 from drake_haptics.device.lcm.lcm_device import COMMAND_CHANNEL, STATUS_CHANNEL
-from drake_haptics.loop.add_haptic_loop import check_names
+from drake_haptics.loop.contact import whole_or_nothing
 from drake_haptics.loop.simulated_device import (
     make_hand_path,
     make_simulated_device,
@@ -179,34 +179,34 @@ def AddLcmDriver(
         ValueError: The period or a limit is out of range, or the builder has a driver
             already.
     """
-    gate = builder.AddNamedSystem(
-        "haptic_command_receiver",
-        HapticCommandReceiver(
-            period_s, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
-        ),
-    )
-    sender = builder.AddNamedSystem(
-        "haptic_status_sender", HapticStatusSender(period_s)
-    )
-    commands = builder.AddNamedSystem(
-        "haptic_command_subscriber",
-        LcmSubscriberSystem.Make(COMMAND_CHANNEL, _ReceivedCommand, lcm),
-    )
-    statuses = builder.AddNamedSystem(
-        "haptic_status_publisher",
-        LcmPublisherSystem.Make(STATUS_CHANNEL, lcmt_haptic_status, lcm, period_s),
-    )
-    X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
-    for output, input in [
-        (commands.get_output_port(), gate.GetInputPort("lcmt_haptic_command")),
-        (X_BH, gate.GetInputPort("X_BH")),
-        (V_BH, gate.GetInputPort("V_BH")),
-        (gate.GetOutputPort("F_Ho_B"), arm.GetInputPort("F_Ho_W_rendered")),
-        (X_BH, sender.GetInputPort("X_BH")),
-        (V_BH, sender.GetInputPort("V_BH")),
-        (gate.GetOutputPort("gate_status"), sender.GetInputPort("gate_status")),
-        (sender.GetOutputPort("lcmt_haptic_status"), statuses.get_input_port()),
-    ]:
-        builder.Connect(output, input)
-    check_names(builder)
+    with whole_or_nothing(builder):
+        gate = builder.AddNamedSystem(
+            "haptic_command_receiver",
+            HapticCommandReceiver(
+                period_s, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
+            ),
+        )
+        sender = builder.AddNamedSystem(
+            "haptic_status_sender", HapticStatusSender(period_s)
+        )
+        commands = builder.AddNamedSystem(
+            "haptic_command_subscriber",
+            LcmSubscriberSystem.Make(COMMAND_CHANNEL, _ReceivedCommand, lcm),
+        )
+        statuses = builder.AddNamedSystem(
+            "haptic_status_publisher",
+            LcmPublisherSystem.Make(STATUS_CHANNEL, lcmt_haptic_status, lcm, period_s),
+        )
+        X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
+        for output, input in [
+            (commands.get_output_port(), gate.GetInputPort("lcmt_haptic_command")),
+            (X_BH, gate.GetInputPort("X_BH")),
+            (V_BH, gate.GetInputPort("V_BH")),
+            (gate.GetOutputPort("F_Ho_B"), arm.GetInputPort("F_Ho_W_rendered")),
+            (X_BH, sender.GetInputPort("X_BH")),
+            (V_BH, sender.GetInputPort("V_BH")),
+            (gate.GetOutputPort("gate_status"), sender.GetInputPort("gate_status")),
+            (sender.GetOutputPort("lcmt_haptic_status"), statuses.get_input_port()),
+        ]:
+            builder.Connect(output, input)
     return gate

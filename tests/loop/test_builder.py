@@ -192,8 +192,18 @@ def test_a_second_loop_in_one_builder_is_refused_before_drake_ends_the_process(
     tmp_path,
 ):
     builder, _ = add_loop_around_a_cart(tmp_path)
+    before = builder.GetSystems()
     with pytest.raises(ValueError, match=r"two systems called 'device', .* of its own"):
         add_loop_around_a_cart(tmp_path, builder)
+    assert builder.GetSystems() == before
+
+
+def test_a_loop_that_is_refused_leaves_the_builder_as_it_was(tmp_path):
+    builder = DiagramBuilder()
+    with pytest.raises(ValueError, match="one entry for each of the 1 objects"):
+        add_loop_around_a_cart(tmp_path, builder, materials=[])
+    assert not builder.GetSystems()
+    add_loop_around_a_cart(tmp_path, builder)
 
 
 def test_a_device_of_another_period_is_refused(tmp_path):

@@ -86,5 +86,7 @@ def test_a_second_driver_in_one_builder_is_refused_before_drake_ends_the_process
     another = make_axis()
     another.set_name("another_axis")
     says = "two systems called 'haptic_command_receiver', .* device into a diagram of"
+    before = builder.GetSystems()
     with pytest.raises(ValueError, match=says):
         add_device(builder, DrakeLcm("memq://"), another)
+    assert builder.GetSystems() == [*before, another]
