@@ -309,7 +309,10 @@ class LcmDevice(DeviceBackend):
         last = self._status
         is_same_run = last is not None and status.boot == last.boot
         step = status.sequence - last.sequence if last and is_same_run else 1
-        if find_flaw(status) or step <= 0:
+        # After a silence any number is new: one that was far ahead by mistake must not
+        # make the rest of the run old.
+        is_old = step <= 0 and math.isfinite(self._heard_s)
+        if find_flaw(status) or is_old:
             self._rejected += 1
             return
         if not is_same_run and status.boot in self._boots and not self._is_shared:
@@ -321,7 +324,7 @@ class LcmDevice(DeviceBackend):
                 self._status_channel,
             )
         self._boots.add(status.boot)
-        self._lost += step - 1
+        self._lost += max(step - 1, 0)
         self._received += 1
         self._status = status
         self._heard_s = self._clock()

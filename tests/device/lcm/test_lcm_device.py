@@ -1,6 +1,7 @@
 """The LCM backend against a device's side in a diagram, in simulated time."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -195,6 +196,19 @@ def test_a_device_that_says_nothing_is_at_fault_until_somebody_wants_it(loop):
     assert loop.state == (GateState.FAULT, Fault.STALE)
     loop.device.recover()
     loop.press(20, push_N=1.0)
+    assert loop.state == (GateState.ACTIVE, Fault.NONE)
+
+
+def test_a_number_far_ahead_silences_a_device_only_until_somebody_wants_it(loop):
+    heard = []
+    loop.lcm.Subscribe("HAPTIC_STATUS", heard.append)
+    loop.tick()
+    ahead = replace(lcmt_haptic_status.decode(heard[0]), sequence=2**62)
+    loop.lcm.Publish("HAPTIC_STATUS", ahead.encode())
+    loop.press(600, push_N=1.0)
+    assert loop.state[0] is GateState.FAULT
+    loop.device.recover()
+    loop.press(600, push_N=1.0)
     assert loop.state == (GateState.ACTIVE, Fault.NONE)
 
 
