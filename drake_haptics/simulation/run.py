@@ -98,8 +98,9 @@ def run(
             constraint` penetrated at all, for the first time in these statistics.
 
     Raises:
-        ValueError: `duration_s` is negative, or `energy` is set but the device is not
-            simulated or the statistics already have ticks.
+        ValueError: `duration_s` is negative, the statistics have another tick, or
+            `energy` is set but the device is not simulated or the statistics already
+            have ticks.
         RunError: The tool or the arm has a pose or velocity that is not finite.
         TypeError: An argument has the wrong type; the message names it.
         KeyboardInterrupt: Ctrl-C was pressed.
@@ -118,6 +119,13 @@ def run(
         raise ValueError("energy can be recorded for a simulated device only")
     if energy and statistics is not None and statistics.ticks:
         raise ValueError("energy can be recorded only from the first tick of a run")
+    if statistics is not None and not math.isclose(
+        statistics.period_s, haptic.period_s
+    ):
+        raise ValueError(
+            f"statistics: have ticks of {statistics.period_s:g} s, and those of the run"
+            f" are of {haptic.period_s:g} s: make them with haptic.period_s"
+        )
     simulator = make_simulator(haptic, context)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     if statistics is None:

@@ -129,6 +129,11 @@ class RunStatistics:
         )
 
     @property
+    def period_s(self) -> float:
+        """Simulated time of a tick, s."""
+        return self._period_s
+
+    @property
     def ticks(self) -> int:
         """Number of ticks so far."""
         return self._ticks + len(self._pending)

@@ -133,6 +133,11 @@ def test_a_time_before_now_is_refused_and_does_not_end_python(haptic, duration_s
         run(haptic, duration_s)
 
 
+def test_statistics_of_another_tick_are_refused(haptic):
+    with pytest.raises(ValueError, match=r"^statistics: have ticks of 0\.5 s, and"):
+        run(haptic, 0.01, statistics=RunStatistics(0.5))
+
+
 def test_garbage_is_thawed_after_a_run(haptic):
     before = gc.get_freeze_count()
     run(haptic, 0.01)
