@@ -175,8 +175,9 @@ def analyze_scene(
     Raises:
         ValueError: The tool does not come to rest, or there is no equilibrium, or
             `map_size` is 1 or negative.
-        SceneError: The scene cannot be built. drake_haptics.simulation.run.RunError:
-        The scene diverges before the tool touches.
+        SceneError: The scene cannot be built.
+        drake_haptics.simulation.run.RunError: The scene diverges before the tool
+            touches.
     """
     if map_size < 0 or map_size == 1:
         raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")
@@ -256,7 +257,7 @@ def _choose_grid(
         if np.isfinite(value)
     ]
     highest = _BEYOND * max(found, default=1000.0)
-    lowest = min(_LOWEST_SHARE * highest, 0.5 * coupling.stiffness_N_per_m)
+    lowest = min(_LOWEST_SHARE * highest, 0.5 * (coupling.stiffness_N_per_m or highest))
     most = 4.0 * max(coupling.damping_Ns_per_m, 1.0)
     return np.geomspace(lowest, highest, size), np.linspace(0.0, most, size)
 

@@ -183,6 +183,12 @@ def test_an_unstable_coupling_is_analysed_all_the_same(scene, quick_limits):
     assert found.map is None and found.broken_bounds
 
 
+def test_a_map_of_a_coupling_that_only_turns_has_stiffnesses_to_show(scene):
+    turns = replace(scene, coupling=CouplingParameters(stiffness_N_per_m=0.0))
+    stiffness_N_per_m, _ = scene_stability._choose_grid(turns, (), 3)
+    assert 0.0 < stiffness_N_per_m[0] < stiffness_N_per_m[-1]
+
+
 @pytest.mark.parametrize("size", [-1, 1])
 def test_a_map_of_one_point_is_refused(scene, size):
     with pytest.raises(
