@@ -74,7 +74,7 @@ def run(
 
     Args:
         haptic: Return value of `BuildHapticDiagram`.
-        duration_s: Simulated time, s. Defaults to forever.
+        duration_s: Simulated time, s, rounded up to whole ticks. Defaults to forever.
         pace: Pacer that waits for each tick, so that simulated time is clock time; a
             device needs it. The run then requests real-time priority. Defaults to
             running as fast as possible.
@@ -134,7 +134,7 @@ def run(
         statistics.book(ledger)
     before_m = statistics.max_penetration_m
     end_s = math.inf
-    if duration_s is not None:
+    if duration_s is not None and duration_s < math.inf:
         end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
     # Collecting garbage over all of pydrake's objects takes many ticks, so they are
@@ -173,10 +173,10 @@ def _make_depth_warner(haptic: HapticDiagram, root: Context) -> Callable[[float]
 
 
 def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float:
-    """Returns the end time of a run, s, rounded to a tick if round-off apart."""
-    end_s = start_s + duration_s
-    tick_s = round(end_s / haptic.period_s) * haptic.period_s
-    return tick_s if math.isclose(end_s, tick_s, rel_tol=1e-12) else end_s
+    """Returns the end time of a run, s: the end of a tick."""
+    # Round-off must not make another tick.
+    ticks = math.ceil((start_s + duration_s) / haptic.period_s - 1e-6)
+    return max(start_s, ticks * haptic.period_s)
 
 
 def _make_monitor(

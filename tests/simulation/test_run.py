@@ -41,6 +41,26 @@ def test_a_run_measures_every_tick(haptic):
     assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
 
 
+def test_runs_of_parts_of_a_tick_count_no_tick_twice(haptic):
+    times, statistics = [], RunStatistics(haptic.period_s)
+    context = haptic.diagram.CreateDefaultContext()
+    for duration_s in (0.4e-3, 1.6e-3, 3e-3):
+        run(
+            haptic,
+            duration_s,
+            context=context,
+            statistics=statistics,
+            on_tick=lambda context: times.append(context.get_time()),
+        )
+    assert times == pytest.approx(np.arange(1, 7) * 1e-3)
+    assert statistics.duration_s == pytest.approx(context.get_time())
+
+
+def test_an_infinite_run_ends_when_it_is_told(haptic):
+    figures = run(haptic, np.inf, on_tick=lambda context: context.get_time() > 4.5e-3)
+    assert figures.ticks == 5
+
+
 def test_a_run_starts_again_each_time(haptic):
     first, second = (run(haptic, 0.3, energy=True).to_dict() for _ in range(2))
     for key in (
