@@ -129,7 +129,9 @@ def run(
     simulator = make_simulator(haptic, context)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     if statistics is None:
-        statistics = RunStatistics(haptic.period_s, pace=pace)
+        statistics = RunStatistics(haptic.period_s)
+    if pace is not None:
+        statistics.follow(pace)
     if ledger is not None:
         statistics.book(ledger)
     before_m = statistics.max_penetration_m

@@ -221,6 +221,10 @@ class RunStatistics:
         p50, p99, p99_9 = (1e6 * late_s for late_s in self._pace.calc_lateness())
         return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": self._pace.skipped}
 
+    def follow(self, pace: RealTimePacer) -> None:
+        """Reports the lateness of a pacer from now on."""
+        self._pace = pace
+
     def book(self, ledger: EnergyLedger) -> None:
         """Reports the energy in a ledger from now on."""
         self._ledger = ledger

@@ -61,6 +61,12 @@ def test_an_infinite_run_ends_when_it_is_told(haptic):
     assert figures.ticks == 5
 
 
+def test_statistics_made_before_a_run_report_its_lateness(haptic):
+    statistics = RunStatistics(haptic.period_s)
+    run(haptic, 0.01, pace=RealTimePacer(haptic.period_s), statistics=statistics)
+    assert statistics.lateness_us["skipped"] >= 0
+
+
 def test_a_run_starts_again_each_time(haptic):
     first, second = (run(haptic, 0.3, energy=True).to_dict() for _ in range(2))
     for key in (
