@@ -85,8 +85,8 @@ def run(
             which it may change only parameters, as
             `drake_haptics.simulation.live_values` does. Its time counts as part of the
             tick. The run ends if it returns True.
-        context: Context to continue from, which becomes the simulator's and is not
-            initialized again. Defaults to the scene's start.
+        context: Context to continue from, which becomes the simulator's and is
+            initialized only at time 0. Defaults to the scene's start.
         statistics: Statistics to add to. Defaults to new ones. They are filled tick by
             tick, so that they are valid even if an error or Ctrl-C ends the run.
 
@@ -146,7 +146,9 @@ def run(
     gc.freeze()
     try:
         simulator.Initialize(
-            InitializeParams(suppress_initialization_events=context is not None)
+            InitializeParams(
+                suppress_initialization_events=simulator.get_context().get_time() > 0.0
+            )
         )
         if ledger is not None:
             ledger.add()

@@ -79,6 +79,14 @@ def test_a_run_starts_again_each_time(haptic):
         assert first[key] == second[key]
 
 
+def test_a_context_that_never_ran_starts_like_the_scene(tmp_path):
+    slow = change_scene(over_a_plate(tmp_path, [ABOVE]), ["contact.query_rate_hz=100"])
+    haptic = BuildHapticDiagram(slow)
+    expected = run(haptic, 0.02)
+    found = run(haptic, 0.02, context=haptic.diagram.CreateDefaultContext())
+    assert found.max_force_N == expected.max_force_N
+
+
 def test_the_energy_of_every_tick_is_booked(haptic):
     # The books begin with the first tick: what the tool has at the end came in.
     books = run(haptic, 0.3, energy=True).to_dict()["energy_J"]
