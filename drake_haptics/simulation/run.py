@@ -98,9 +98,9 @@ def run(
             constraint` penetrated at all, for the first time in these statistics.
 
     Raises:
-        ValueError: `duration_s` is negative, the statistics have another tick, or
-            `energy` is set but the device is not simulated or the statistics already
-            have ticks.
+        ValueError: The diagram is part of another one, `duration_s` is negative, the
+            statistics have another tick, or `energy` is set but the device is not
+            simulated or the statistics already have ticks.
         RunError: The tool or the arm has a pose or velocity that is not finite.
         TypeError: An argument has the wrong type; the message names it.
         KeyboardInterrupt: Ctrl-C was pressed.
@@ -112,6 +112,11 @@ def run(
         on_tick=(on_tick, Callable | None),
         statistics=(statistics, RunStatistics | None),
     )
+    if haptic.diagram.GetSystemPathname().count("::") > 1:
+        raise ValueError(
+            "haptic: its diagram is part of another one: advance that by a Simulator,"
+            " or call BuildHapticDiagram again for a run"
+        )
     # Drake aborts the program if the end time is in the past.
     if duration_s is not None and not duration_s >= 0.0:
         raise ValueError(f"duration_s must not be negative, is {duration_s}")

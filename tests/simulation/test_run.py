@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from fake_clock import FakeClock
+from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
@@ -170,6 +171,18 @@ def test_a_time_before_now_is_refused_and_does_not_end_python(haptic, duration_s
 def test_statistics_of_another_tick_are_refused(haptic):
     with pytest.raises(ValueError, match=r"^statistics: have ticks of 0\.5 s, and"):
         run(haptic, 0.01, statistics=RunStatistics(0.5))
+
+
+def test_a_diagram_inside_another_is_not_run_alone(tmp_path):
+    part, builder = (
+        BuildHapticDiagram(over_a_plate(tmp_path, [ABOVE])),
+        DiagramBuilder(),
+    )
+    builder.AddSystem(part.diagram)
+    run(part, 0.001)
+    builder.Build()
+    with pytest.raises(ValueError, match=r"^haptic: its diagram is part"):
+        run(part, 0.001)
 
 
 def test_garbage_is_thawed_after_a_run(haptic):
