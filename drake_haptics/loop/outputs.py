@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from importlib.metadata import version
 
@@ -114,7 +115,15 @@ def AddTickLog(
 
     Returns:
         The system, named tick_log_sink.
+
+    Raises:
+        ValueError: The recorder's header has another tick.
     """
+    if not math.isclose(recorder.period_s, period_s):
+        raise ValueError(
+            f"recorder: its header has ticks of {recorder.period_s:g} s, and those of"
+            f" the loop are of {period_s:g} s: make the header of the loop's scene"
+        )
     device, tool = loop.device, loop.haptic_tool
     sources = {
         "X_WH": device.GetOutputPort("X_WH"),

@@ -78,6 +78,7 @@ class TickRecorder:
             OSError: The file cannot be created.
         """
         self._path = Path(path)
+        self._period_s = header.period_s
         self._stream = _create(self._path, pack_header(header))
         self._start_s = time.perf_counter()
         self._ticks = 0
@@ -92,6 +93,11 @@ class TickRecorder:
             target=self._write_all, name="tick_recorder", daemon=True
         )
         self._thread.start()
+
+    @property
+    def period_s(self) -> float:
+        """The tick of the header, s."""
+        return self._period_s
 
     @property
     def ticks(self) -> int:

@@ -1,5 +1,7 @@
 """What is noted is what the updates of the tick saw, and costs nothing unasked."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
@@ -142,6 +144,15 @@ def test_without_a_recorder_there_is_no_sink(scene):
 def test_a_period_must_be_positive():
     with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         TickLogSink(None, 0.0)
+
+
+def test_a_log_of_another_tick_is_refused(tmp_path, scene):
+    header = replace(make_log_header(scene), period_s=2e-3)
+    with TickRecorder(tmp_path / "run.tick", header) as recorder:
+        with pytest.raises(
+            ValueError, match=r"^recorder: its header has ticks of 0\.00"
+        ):
+            BuildHapticDiagram(scene, recorder=recorder)
 
 
 def test_a_first_reading_is_not_noted_twice(tmp_path, scene):
