@@ -76,22 +76,22 @@ def find_stability_limit(
             does; NaN if it is unknown, which counts as unstable.
         start: First value to try, in the range.
         lowest: Lower end of the range, above 0.
-        highest: Upper end of the range, at least `lowest`.
+        highest: Upper end of the range, at least `lowest` and finite.
         relative_tolerance: Relative tolerance of the limit, from 1e-12 on.
 
     Raises:
-        ValueError: The range is empty or not above 0, `start` is not in it, or the
-            tolerance is below round-off or not below 1.
+        ValueError: The range is empty, infinite or not above 0, `start` is not in it,
+            or the tolerance is below round-off or not below 1.
     """
     if not _LEAST_TOLERANCE <= relative_tolerance < 1.0:
         raise ValueError(
             f"relative_tolerance must be from {_LEAST_TOLERANCE:g} to below 1, is"
             f" {relative_tolerance}"
         )
-    if not 0.0 < lowest <= start <= highest:
+    if not 0.0 < lowest <= start <= highest < math.inf:
         raise ValueError(
-            f"start must be in the range from lowest to highest, above 0: {lowest:g} <="
-            f" {start:g} <= {highest:g} is wrong"
+            "start must be in the range from lowest to highest, above 0 and finite:"
+            f" {lowest:g} <= {start:g} <= {highest:g} is wrong"
         )
     tried: dict[float, float] = {}
 

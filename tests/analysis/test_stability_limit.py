@@ -45,7 +45,8 @@ def test_few_values_are_tried():
 
 
 @pytest.mark.parametrize(
-    ("start", "lowest", "highest"), [(1.0, 2.0, 3.0), (4.0, 2.0, 3.0), (0.0, 0.0, 1.0)]
+    ("start", "lowest", "highest"),
+    [(1.0, 2.0, 3.0), (4.0, 2.0, 3.0), (0.0, 0.0, 1.0), (1.0, 1.0, math.inf)],
 )
 def test_a_start_out_of_range_is_refused(start, lowest, highest):
     with pytest.raises(ValueError, match="start must be in the range"):
