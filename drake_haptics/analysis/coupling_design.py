@@ -25,6 +25,7 @@ from drake_haptics.bounds.sampled_spring import (
 )
 from drake_haptics.common.colors import EIGENVALUE, FORMULA, INKS
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
@@ -208,6 +209,7 @@ def suggest_coupling(
         ValueError: There is no such grip, the rate, mass or inertia is not positive,
             the delay or a damping is negative, the delay is above 1,000 periods, the
             margin is not above 1, or no stiffness has it.
+        TypeError: The device is of another type.
     """
     _check(rate_hz, delay_s, margin, hand)
     handle, preset = _read_device(device)
@@ -284,6 +286,7 @@ def _read_device(
     device: str | DevicePreset | HeldHandle,
 ) -> tuple[HeldHandle, DevicePreset | None]:
     """Returns the handle without a hand, and its ratings if there are any."""
+    require_kinds(device=(device, str | DevicePreset | HeldHandle))
     if isinstance(device, HeldHandle):
         return device, None
     preset = load_device_preset(device) if isinstance(device, str) else device

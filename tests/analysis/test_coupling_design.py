@@ -253,3 +253,8 @@ def test_what_cannot_be_is_refused(arguments, message):
 def test_a_device_that_is_not_known_is_refused():
     with pytest.raises(SceneError, match=r"device\.preset: 'flacon' is not one of"):
         suggest_coupling("flacon", 1000.0)
+
+
+def test_a_device_of_another_type_is_refused():
+    with pytest.raises(TypeError, match=r"^device must be a text or a"):
+        suggest_coupling(None, 1000.0)
