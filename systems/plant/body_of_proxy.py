@@ -42,6 +42,8 @@ class BodyOfProxy(LeafSystem):
     It has no state.
     """
 
+    no_derivatives = "puts a proxy in its body's place: take contact.law: penalty"
+
     def __init__(self, period_s: float):
         """Constructs the system.
 

@@ -14,6 +14,7 @@ from pydrake.systems.primitives import ConstantVectorSource, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
 from drake_haptics import AddHapticRendering
+from drake_haptics.analysis import find_equilibrium
 from drake_haptics.bounds.explicit_step import calc_explicit_stiffness
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
@@ -272,6 +273,18 @@ def test_the_proxy_is_stated_before_the_run():
     rendering = render(scene.finalize())
     assert rendering.proxy_gains.stiffness_N_per_m == pytest.approx(MASS / 2 / STEP**2)
     assert "drawn to a proxy with 5e+04 N/m" in repr(rendering)
+
+
+def test_a_proxy_has_no_derivatives_and_says_what_to_take():
+    scene = PlantScene(PLANTS["continuous"])
+    scene.add_slab()
+    scene.add("tool", CUBE)
+    render(scene.finalize())
+    scene.start(tool=RigidTransform([0, 0, 0.015]))
+    with pytest.raises(
+        ValueError, match=r"body_of_proxy .*: take contact\.law: penalty"
+    ):
+        find_equilibrium(scene.diagram, scene.root)
 
 
 def test_what_the_law_does_not_have_is_refused():
