@@ -244,7 +244,8 @@ def ConnectMovingObject(
         V_WO: Spatial velocity (6) [ω; v] of the object in the world, rad/s and m/s.
 
     Raises:
-        ValueError: There is no such object, or it does not move.
+        ValueError: There is no such object, it does not move, or it is connected
+            already.
     """
     parts: list[System | None] = [*vars(loop.effects).values()]
     if loop.penalty is None:
@@ -264,5 +265,8 @@ def ConnectMovingObject(
     ]
     if not inputs:
         raise ValueError(f"name: no object that moves is called {name!r}")
+    # Drake may end the process for a second connection.
+    if any(builder.IsConnectedOrExported(input) for _, input in inputs):
+        raise ValueError(f"name: the motion of {name!r} is connected already")
     for output, input in inputs:
         builder.Connect(output, input)

@@ -211,6 +211,15 @@ def test_a_device_of_another_period_is_refused(tmp_path):
         add_loop_around_a_cart(tmp_path, period_s=2e-3)
 
 
+def test_a_motion_is_connected_once_before_drake_ends_the_process(tmp_path):
+    builder, loop = add_loop_around_a_cart(tmp_path)
+    pose = builder.AddSystem(ConstantVectorSource(np.zeros(7))).get_output_port()
+    rest = builder.AddSystem(ConstantVectorSource(np.zeros(6))).get_output_port()
+    ConnectMovingObject(builder, loop, "cart", pose, rest)
+    with pytest.raises(ValueError, match="motion of 'cart' is connected already"):
+        ConnectMovingObject(builder, loop, "cart", pose, rest)
+
+
 @pytest.mark.parametrize("effects", [Effects(), Effects(**EVERY)])
 def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path, effects):
     builder, loop = add_loop_around_a_cart(tmp_path, effects=effects)
