@@ -12,6 +12,7 @@ from pydrake.systems.lcm import LcmPublisherSystem, LcmSubscriberSystem
 
 from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.device.driver import DeviceDriver
 from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
@@ -176,9 +177,14 @@ def AddLcmDriver(
         The gate, whose output `gate_status` is its state.
 
     Raises:
-        ValueError: The period or a limit is out of range, or the builder has a driver
-            already.
+        ValueError: The period or a limit is out of range, the arm takes another
+            wrench, or the builder has a driver already.
+        TypeError: An argument has the wrong type; the message names it.
     """
+    require_kinds(builder=(builder, DiagramBuilder), arm=(arm, System))
+    # Drake may end the process for a second connection.
+    if builder.IsConnectedOrExported(arm.GetInputPort("F_Ho_W_rendered")):
+        raise ValueError("arm: its input F_Ho_W_rendered is connected already")
     with whole_or_nothing(builder):
         gate = builder.AddNamedSystem(
             "haptic_command_receiver",

@@ -4,6 +4,7 @@ import pytest
 from lcm_rig import PERIOD_S, add_device, make_axis, make_simulator
 from pydrake.lcm import DrakeLcm
 from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.device.lcm.haptic_messages import (
@@ -11,6 +12,7 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 from drake_haptics.device.lcm.lcm_device import COMMAND_CHANNEL
+from drake_haptics.loop.drivers import AddLcmDriver
 
 FORCE_N = 1.0
 RAMP_IN_TICKS, TTL_TICKS, RAMP_OUT_TICKS = 200, 100, 20
@@ -90,3 +92,15 @@ def test_a_second_driver_in_one_builder_is_refused_before_drake_ends_the_process
     with pytest.raises(ValueError, match=says):
         add_device(builder, DrakeLcm("memq://"), another)
     assert builder.GetSystems() == [*before, another]
+
+
+def test_an_arm_that_takes_another_wrench_is_refused_before_drake_ends_the_process():
+    builder, axis = DiagramBuilder(), make_axis()
+    rest = builder.AddSystem(ConstantVectorSource([0.0] * 6))
+    builder.AddSystem(axis)
+    builder.Connect(rest.get_output_port(), axis.GetInputPort("F_Ho_W_rendered"))
+    limits = {"period_s": PERIOD_S, "max_force_N": 1.0, "max_torque_Nm": 0.1}
+    with pytest.raises(ValueError, match=r"^arm: its input F_Ho_W_rendered is conn"):
+        AddLcmDriver(builder, axis, DrakeLcm("memq://"), **limits)
+    with pytest.raises(TypeError, match=r"^arm must be a .*System, is None"):
+        AddLcmDriver(builder, None, DrakeLcm("memq://"), **limits)
