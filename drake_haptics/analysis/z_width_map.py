@@ -130,7 +130,8 @@ def _scale_axes(
     if _rises_by_a_factor(B):
         axes.set_yscale("log")
     own_K, own_B = gains or (K[0], B[0])
-    shown_K = [*K, own_K]
+    # A logarithmic axis has no zero.
+    shown_K = [*K, own_K or K[0]]
     shown_B = [*B, own_B]
     axes.set_xlim(min(shown_K), max(shown_K))
     axes.set_ylim(min(shown_B), max(shown_B))

@@ -253,6 +253,13 @@ def test_open_points_are_drawn_as_such_and_grids_by_a_factor_are_logarithmic():
     axes.figure.canvas.draw()
 
 
+def test_gains_without_stiffness_leave_a_logarithmic_axis_above_zero(recwarn):
+    found = calc_z_width(UNIT, [0.1, 0.2, 0.4], [0.0, 0.5], executor=SERIAL)
+    axes = found.plot(Figure().add_subplot(), gains=(0.0, 0.5))
+    assert axes.get_xlim() == (0.1, 0.4)
+    assert not recwarn.list
+
+
 def test_a_map_that_is_nowhere_stable_can_be_drawn():
     axes = make_map([[1.5, 2.0, 3.0], [1.2, 1.4, 1.8]]).plot(
         Figure().add_subplot(), gains=(1.0, 1.0)
