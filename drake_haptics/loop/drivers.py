@@ -29,6 +29,9 @@ from drake_haptics.scene.schema import Scene
 from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
 from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
 
+# A slower driver does not make the arm's motion slower; longer steps would diverge.
+_LONGEST_STEP_S = 1e-3
+
 
 class SimulatedDriverArm:
     """A simulated arm for a driver; a `drake_haptics.device.driver.DrivenArm`.
@@ -53,7 +56,8 @@ class SimulatedDriverArm:
         self._ticks = 0
         self._starts = False
         simulator = Simulator(device)
-        ResetIntegratorFromFlags(simulator, "runge_kutta2", self._period_s)
+        step_s = min(self._period_s, _LONGEST_STEP_S)
+        ResetIntegratorFromFlags(simulator, "runge_kutta2", step_s)
         simulator.get_mutable_integrator().set_fixed_step_mode(True)
         simulator.Initialize()
         self._simulator = simulator
@@ -65,6 +69,7 @@ class SimulatedDriverArm:
         self._V_WH = device.GetOutputPort("V_WH")
         X_BW = place_base(scene, path).inverse()
         self._to_base = FrameChange(pose_to_vector(X_BW))
+        self._motion = self._read_motion()
 
     @property
     def max_force_N(self) -> float:
@@ -96,14 +101,24 @@ class SimulatedDriverArm:
             self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
                 self._to_base.change_wrench_back(F_Ho_B)
             )
-            try:
-                self._simulator.AdvanceTo(self._ticks * self._period_s)
-            except FloatingPointError:
-                return np.full(7, np.nan), np.full(6, np.nan)
-        motion = self._to_base.change_motion(
+            self._advance()
+        return self._motion[:7], self._motion[7:]
+
+    def _advance(self) -> None:
+        """Simulates a period; a simulation that has diverged cannot continue."""
+        if np.isnan(self._motion).any():
+            return
+        try:
+            self._simulator.AdvanceTo(self._ticks * self._period_s)
+            self._motion = self._read_motion()
+        except FloatingPointError:
+            self._motion = np.full(13, np.nan)
+
+    def _read_motion(self) -> np.ndarray:
+        """Returns [X_BH; V_BH] (13,)."""
+        return self._to_base.change_motion(
             self._X_WH.Eval(self._context), self._V_WH.Eval(self._context)
         )
-        return motion[:7], motion[7:]
 
 
 def make_simulated_driver(

@@ -5,6 +5,7 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 
 from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop import drivers
 from drake_haptics.loop.drivers import SimulatedDriverArm
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.device_preset import load_device_preset
@@ -121,3 +122,27 @@ def test_the_limits_are_those_of_the_scene(scene):
     assert (arm.max_force_N, arm.max_torque_Nm) == (8.5, 0.188)
     scene.device.max_force_N = 3.0
     assert SimulatedDriverArm(scene).max_force_N == 3.0
+
+
+@pytest.mark.parametrize("rate_hz", [10.0, 25.0])
+def test_the_hand_follows_its_path_at_the_lowest_rates(rate_hz):
+    scene = load_scene(find_scene("rubbed_sphere"))
+    scene.device.rate_hz = rate_hz
+    arm = SimulatedDriverArm(scene)
+    arm.start()
+    for _ in range(round(3 * rate_hz)):
+        V_BH = arm.step(np.zeros(6))[1]
+        assert np.linalg.norm(V_BH[3:]) < 0.5
+
+
+@pytest.mark.parametrize("rate_hz", [10.0, 15.0])
+def test_an_arm_that_has_diverged_remains_without_a_state(monkeypatch, rate_hz):
+    monkeypatch.setattr(drivers, "_LONGEST_STEP_S", 1.0)
+    scene = load_scene(find_scene("rubbed_sphere"))
+    scene.device.rate_hz = rate_hz
+    arm = SimulatedDriverArm(scene)
+    arm.start()
+    motions = [np.concatenate(arm.step(np.zeros(6))) for _ in range(30)]
+    lost = [np.isnan(motion).all() for motion in motions]
+    assert any(lost) and lost == sorted(lost)
+    assert np.isfinite(motions[: lost.index(True)]).all()
