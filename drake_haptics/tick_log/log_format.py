@@ -257,6 +257,8 @@ def join_rows(parts: list[TickRows]) -> TickRows:
 
 
 BLOCK_MAGIC = b"\x89DHBLK\r\n"
+# Common to `FILE_MAGIC` and `BLOCK_MAGIC`.
+MAGIC_START = b"\x89DH"
 MAX_BLOCK_TICKS = 256
 MAX_TICK = 1 << 48
 

@@ -11,7 +11,8 @@ from typing import BinaryIO
 from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.log_format import (
     BLOCK_HEADER_BYTES,
-    BLOCK_MAGIC,
+    FILE_MAGIC,
+    MAGIC_START,
     BlockHeader,
     TickLogHeader,
     TickRows,
@@ -50,8 +51,8 @@ def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
     """Yields the content of a log, from the stream's position to its end.
 
     A damaged block yields only the damage; the scan continues at the next valid one.
-    Ticks increase from block to block; a repeated tick counts as damage. At most the
-    largest block is read at once.
+    Ticks increase from block to block; a repeated tick counts as damage. The head of
+    another log ends this one. At most the largest block is read at once.
 
     Args:
         stream: The seekable file, after its header.
@@ -60,7 +61,10 @@ def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
     position, next_tick = stream.tell(), 0
     while position < size:
         stream.seek(position)
-        header = parse_block_header(stream.read(BLOCK_HEADER_BYTES))
+        head = stream.read(BLOCK_HEADER_BYTES)
+        if head.startswith(FILE_MAGIC):
+            return
+        header = parse_block_header(head)
         if header is not None and header.first_tick >= next_tick:
             if header.ticks == 0:
                 yield EndMark(header.first_tick)
@@ -72,7 +76,7 @@ def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
                 position += BLOCK_HEADER_BYTES + header.payload_bytes
                 continue
         yield Damage(position)
-        position = _find_block_header(stream, position + 1, size)
+        position = _find_header(stream, position + 1, size)
 
 
 def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
@@ -83,17 +87,18 @@ def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
     return unpack_block(header, payload)
 
 
-def _find_block_header(stream: BinaryIO, start: int, size: int) -> int:
-    """Returns the offset of the next valid header from `start`; `size` if none."""
+def _find_header(stream: BinaryIO, start: int, size: int) -> int:
+    """Returns the offset of the next valid block's header, or log's; `size` if none."""
     stream.seek(start)
     window = b""
     while data := stream.read(_SEARCHED_BYTES):
         window += data
-        found = window.find(BLOCK_MAGIC)
+        found = window.find(MAGIC_START)
         while found >= 0:
-            if parse_block_header(window[found : found + BLOCK_HEADER_BYTES]):
+            head = window[found : found + BLOCK_HEADER_BYTES]
+            if head.startswith(FILE_MAGIC) or parse_block_header(head):
                 return start + found
-            found = window.find(BLOCK_MAGIC, found + 1)
+            found = window.find(MAGIC_START, found + 1)
         # A header may begin in one window and end in the next.
         kept = window[-(BLOCK_HEADER_BYTES - 1) :]
         start += len(window) - len(kept)

@@ -113,6 +113,16 @@ def test_ticks_that_come_again_are_left_out(path):
     assert log.damaged_blocks == 1
 
 
+@pytest.mark.parametrize("removed", [0, 1, 5])
+def test_another_log_that_is_appended_does_not_continue_a_cut_one(path, removed):
+    cut = HEAD + PACKED[0] + PACKED[1]
+    cut = cut[: len(cut) - removed]
+    log = read(path, cut + SOUND)
+    kept = BLOCKS[: 1 if removed else 2]
+    assert_same_bits(log.rows, join_rows(kept))
+    assert log.gaps == (Gap(sum(map(len, kept)), None),)
+
+
 def test_an_end_mark_that_lies_is_no_end(path):
     log = read(path, HEAD + PACKED[0] + pack_end(3) + PACKED[1] + PACKED[2])
     assert len(log.rows) == TICKS
