@@ -126,7 +126,15 @@ class TickRecorder:
             query_s: Duration of the contact query, s.
             distance_m: Distance of the nearest contact, m; infinite without one.
             device_time_s: Time of the device's clock, s; NaN if it is simulated.
+
+        Raises:
+            ValueError: The log is closed.
         """
+        if self._stop.is_set():
+            raise ValueError(
+                f"the log {self._path} is closed: simulate before the recorder's `with`"
+                " ends"
+            )
         tick = self._ticks
         self._ticks = tick + 1
         chunk = self._chunk

@@ -188,6 +188,14 @@ def test_closing_twice_is_closing_once(tmp_path):
     assert read_tick_log(tmp_path / "run.tick").gaps == ()
 
 
+def test_no_tick_is_lost_silently_after_closing(tmp_path):
+    with TickRecorder(tmp_path / "run.tick", HEADER) as recorder:
+        add_rows(recorder, make_rows(3))
+    with pytest.raises(ValueError, match=r"run\.tick is closed: simulate before"):
+        add_rows(recorder, make_rows(1))
+    assert recorder.ticks == 3
+
+
 def test_a_folder_that_is_not_there_is_told_at_once(tmp_path):
     with pytest.raises(FileNotFoundError):
         TickRecorder(tmp_path / "none" / "run.tick", HEADER)
