@@ -32,6 +32,8 @@ FORMAT_VERSION = 1
 _FILE_HEAD = struct.Struct("<8sHHI")
 _CRC = struct.Struct("<I")
 _MAX_JSON_BYTES = 1 << 24
+# That of a device's readings.
+_QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,8 @@ def _parse_header(facts: object) -> TickLogHeader:
         raise ValueError("a version, a scene or a mesh is not text")
     if not all(isinstance(x, float) and math.isfinite(x) for x in numbers):
         raise ValueError("a number is not a finite one with a decimal point")
-    is_pose = len(header.X_WB) == 7 and any(header.X_WB[:4])
+    length = math.hypot(*header.X_WB[:4])
+    is_pose = len(header.X_WB) == 7 and abs(length - 1.0) <= _QUATERNION_TOLERANCE
     if not is_pose or header.period_s <= 0.0:
         raise ValueError("X_WB is a pose of 7 numbers, and period_s is positive")
     return header

@@ -55,6 +55,8 @@ def test_the_first_block_comes_next():
         (forge(make_json(mesh_sha256={"a": 1})), "is not text"),
         (forge(make_json(X_WB=[1.0])), "7 numbers"),
         (forge(make_json(X_WB=[0.0] * 7)), "a pose"),
+        (forge(make_json(X_WB=[1e-200, *[0.0] * 6])), "a pose"),
+        (forge(make_json(X_WB=[1e200, *[0.0] * 6])), "a pose"),
         (forge(make_json(X_WB=[[], 1, 2, 3, 4, 5, 6])), "a number is not"),
         (forge(make_json(period_s=0.0)), "positive"),
         (forge(make_json(period_s=float("nan"))), "a number is not"),
