@@ -244,7 +244,8 @@ class DeviceDriver:
             V_BH=reading.V_BH,
             F_Ho_B=reading.F_Ho_B,
             boot=self._boot,
-            session=gate.session,
+            # A driver that ends serves nobody, though its gate is not told so.
+            session=gate.session if reading.gate == GateState.ACTIVE else 0,
             command_sequence=gate.command_sequence,
             buttons=reading.buttons,
             rejected=gate.rejected % _WRAP,
@@ -372,7 +373,7 @@ class DriverSocket:
         self._socket.setblocking(False)
         try:
             self._socket.bind((host, port))
-        except (OSError, TypeError) as error:  # no host can have that name
+        except (OSError, TypeError, OverflowError) as error:  # the last two: no address
             self._socket.close()
             raise HapticsError(_explain(error, host, port)) from error
 
@@ -408,9 +409,11 @@ class DriverSocket:
         self._socket.close()
 
 
-def _explain(error: OSError | TypeError, host: str, port: int) -> str:
+def _explain(error: Exception, host: str, port: int) -> str:
     """Returns advice about an address that is not available."""
-    if isinstance(error, TypeError):
+    if isinstance(error, OverflowError):
+        return f"port must be from 0 to 65535, is {port}"
+    if not isinstance(error, OSError):
         error = OSError(str(error))
     if error.errno == errno.EADDRINUSE:
         return (

@@ -234,6 +234,7 @@ def test_a_run_ends_at_zero_force_and_says_so(rig):
     rig.driver.run(1e-9)
     state = host.receive(5.0)
     assert state.gate == IDLE and not any(state.F_Ho_B)
+    assert state.session == 0
     assert not np.any(rig.arm.calls[-1])
     assert rig.driver.reading.gate == GateState.IDLE
 

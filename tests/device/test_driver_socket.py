@@ -70,6 +70,12 @@ def test_no_address_is_not_taken_for_every_address():
         DriverSocket("", 0)
 
 
+@pytest.mark.parametrize("port", [-1, 65536])
+def test_a_number_that_no_port_has_is_the_users_error(port):
+    with pytest.raises(HapticsError, match=f"from 0 to 65535, is {port}"):
+        DriverSocket("127.0.0.1", port)
+
+
 def test_a_port_is_free_again_after_close():
     first = DriverSocket("127.0.0.1", 0)
     port = first.address[1]
