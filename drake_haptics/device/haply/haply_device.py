@@ -19,6 +19,7 @@ from drake_haptics.device.backend import (
     DeviceCommand,
     DeviceError,
     DeviceReading,
+    GateState,
     LinkStatus,
 )
 from drake_haptics.device.driver import read_clock_ns
@@ -171,8 +172,10 @@ class HaplyDevice(DeviceBackend):
         self._command = DeviceCommand(F_Ho_B, command.X_BH, command.V_BH)
 
     def recover(self) -> None:
-        """Ends a fault of the gate, so that the next `write` ramps the force up."""
-        self._exchange.release()
+        """Ends a fault, so that the next `write` ramps the force up."""
+        reading = self._exchange.reading
+        if reading is not None and reading.gate is GateState.FAULT:
+            self._exchange.release()
 
     def close(self) -> None:
         """Ramps the force down, which takes 20 ms, and disconnects."""

@@ -103,6 +103,20 @@ def test_a_loop_that_stops_ends_at_zero_force_and_can_recover():
             wait_until(lambda: is_in(device, GateState.ACTIVE), lambda: press(device))
 
 
+def test_recovering_a_device_that_is_not_at_fault_leaves_its_force():
+    with make_service() as service:
+        mass = service.devices["049D"]
+        with open_device(service) as device:
+            wait_until(
+                lambda: is_in(device, GateState.ACTIVE) and mass.forces[-1][1][2] > 0.9,
+                lambda: press(device),
+            )
+            count = len(mass.forces)
+            device.recover()
+            wait_until(lambda: len(mass.forces) > count + 100, lambda: press(device))
+            assert min(force[2] for _, force in mass.forces[count:]) > 0.5
+
+
 @pytest.mark.parametrize("how", ["restarted", "silent"])
 def test_a_service_that_went_is_felt_again_only_when_it_is_wanted(how):
     with make_service() as service:
