@@ -12,7 +12,12 @@ import numpy as np
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
 from drake_haptics.geometry.mesh.report import Findings, Severity, length
-from drake_haptics.geometry.mesh.topology import Edges, connected_labels, find_edges
+from drake_haptics.geometry.mesh.topology import (
+    Edges,
+    connected_labels,
+    find_edges,
+    triangle_area_vectors,
+)
 from drake_haptics.geometry.mesh.units import guess_unit
 
 # Beyond these sizes of a tool in a hand the unit is probably wrong.
@@ -24,6 +29,8 @@ _SMALL_HOLES = (
     'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
     ' m.export("new.stl")'
 )
+# Angle between neighbors, rad: rounded corners of a fold do not lie in one plane.
+_FOLDED = 1e-3
 # Squares and cubes of larger coordinates could overflow.
 _LARGEST_COORDINATE_M = 1e9
 
@@ -76,6 +83,36 @@ def _measure_rims(edges: Edges, is_open: np.ndarray) -> np.ndarray:
     links = links.reshape(-1, 2)
     label = connected_labels(len(vertices), links)
     return np.unique(label[links[:, 0]], return_counts=True)[1]
+
+
+def check_folds(
+    vertices: np.ndarray, triangles: np.ndarray, thick: np.ndarray, findings: Findings
+) -> None:
+    """Reports neighbors that lie on each other, which fill what is beside a polygon.
+
+    Args:
+        vertices: (n, 3) vertices.
+        triangles: (m, 3) coherently wound triangles.
+        thick: (m,) whether the triangle's component is more than a folded sheet.
+        findings: List to which the finding is appended.
+    """
+    normals = triangle_area_vectors(vertices, triangles)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    a, b = find_edges(triangles[thick]).pairs.T
+    turn = np.linalg.norm(normals[thick][a] + normals[thick][b], axis=1)
+    folded = int((turn < _FOLDED).sum())
+    findings.add(
+        "folds",
+        Severity.DEFECT,
+        folded,
+        count(
+            folded,
+            "edge has both its triangles on the same side, one on the other",
+            "edges have both their triangles on the same side, one on the other",
+        ),
+        "left as they are, and felt. If the file has concave polygons, which are read"
+        " as fans, export it as triangles",
+    )
 
 
 def check_components(

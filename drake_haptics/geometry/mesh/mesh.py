@@ -21,6 +21,7 @@ from drake_haptics.common.value_checks import check_positive
 from drake_haptics.geometry.mesh.checks import (
     check_branching,
     check_components,
+    check_folds,
     check_holes,
     check_size,
     checked_arrays,
@@ -191,6 +192,8 @@ def _take_in(
     winding = wind_components(V, F, findings)
     V, F = separate_components(V, winding.triangles, winding.component)
     check_holes(F, winding.component, findings)
+    thick = winding.solid | ~winding.closed
+    check_folds(V, F, thick[winding.component], findings)
     check_components(winding.orientable, winding.closed, winding.solid, findings)
     extent = V.max(axis=0) - V.min(axis=0)
     check_size(extent, factor, ignored_unit, findings)
