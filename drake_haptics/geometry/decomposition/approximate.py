@@ -21,6 +21,7 @@ import numpy as np
 
 from drake_haptics import _core
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.geometry.decomposition.pieces import MergedPatches
 from drake_haptics.geometry.mesh.mesh import Mesh
 
@@ -37,7 +38,9 @@ def check_error(method: str, error_m: float | None) -> None:
 
     Raises:
         HapticsError: The error is missing, given for another method, or out of range.
+        TypeError: It is not a number.
     """
+    require_kinds(error_m=(error_m, float | None))
     if (method == "merged") != (error_m is not None):
         raise HapticsError(
             "the method merged needs an error_m, how far its pieces may depart from"

@@ -134,6 +134,7 @@ def decompose(
     Raises:
         HapticsError: `mesh` is not a `Mesh`, the method is unknown, or its error or its
             optional package is missing.
+        TypeError: `error_m` is not a number.
     """
     if not isinstance(mesh, Mesh):
         raise HapticsError(
@@ -142,6 +143,8 @@ def decompose(
         )
     method = _checked_method(method)
     check_error(method, error_m)
+    if error_m is not None:
+        error_m = float(error_m)  # JSON has no numbers of NumPy
     report_share = progress or (lambda share: None)
     parameters = _parameters(method, error_m)
     key = cache_key(mesh, method, parameters) if cache else ""

@@ -201,6 +201,22 @@ def test_an_error_goes_with_the_method(method, error_m, complaint):
         decompose(Mesh.from_arrays(*box()), method, error_m=error_m)
 
 
+@pytest.mark.parametrize("number", [np.float32(0.25), np.float64(0.25), np.int64(1)])
+def test_an_error_may_be_a_number_of_numpy(tmp_path, monkeypatch, number):
+    monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path))
+    mesh = Mesh.from_arrays(*l_prism())
+    result = decompose(mesh, "merged", error_m=number)
+    result.save(tmp_path / "merged.npz")
+    again = decompose(mesh, "merged", error_m=float(number))
+    assert again.report.from_cache and len(again.pieces) == len(result.pieces)
+
+
+@pytest.mark.parametrize("number", ["0.001", True, np.ones(3)])
+def test_an_error_that_is_not_a_number_is_refused_by_name(number):
+    with pytest.raises(TypeError, match="error_m must be a number or None"):
+        decompose(Mesh.from_arrays(*box()), "merged", error_m=number)
+
+
 def test_an_exception_from_progress_stops_the_work():
     def interrupt(share):
         if share > 0.3:
