@@ -17,6 +17,7 @@ import numpy as np
 from drake_haptics import _core
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
+from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.mesh.report import Finding, Severity, length
 
@@ -42,10 +43,12 @@ def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
         max_triangles: Largest number of triangles, 4 or more.
 
     Raises:
+        TypeError: `mesh` is not a `Mesh`, or `max_triangles` not a whole number.
         ValueError: `max_triangles` is below 4.
         MeshError: So few triangles would tear or fold the mesh. The message names the
             nearest count that works.
     """
+    require_kinds(mesh=(mesh, Mesh), max_triangles=(max_triangles, int))
     if max_triangles < 4:
         raise ValueError(f"max_triangles must be 4 or more, is {max_triangles}")
     if len(mesh.triangles) <= max_triangles:

@@ -116,6 +116,14 @@ def test_fewer_than_four_triangles_are_no_solid():
         decimate(shape("cup"), 3)
 
 
+def test_triangles_are_counted_in_whole_numbers():
+    mesh = Mesh.from_arrays(*box())
+    with pytest.raises(TypeError, match="max_triangles must be a whole number"):
+        decimate(mesh, 8.0)
+    with pytest.raises(TypeError, match=r"mesh must be a .*Mesh, is of type tuple"):
+        decimate(box(), 8)
+
+
 def test_a_flat_sheet_keeps_its_outline():
     x, y = np.meshgrid(np.arange(6.0), np.arange(6.0))
     V = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
