@@ -96,14 +96,18 @@ class Mesh:
 
     @staticmethod
     def from_arrays(
-        vertices: Any, triangles: Any, *, name: str = "mesh", strict: bool = False
+        vertices: Any,
+        triangles: Any,
+        *,
+        name: str | os.PathLike[str] = "mesh",
+        strict: bool = False,
     ) -> Mesh:
         """Makes a mesh from arrays.
 
         Args:
             vertices: (n, 3) real numbers, m.
             triangles: (m, 3) integers, indices of vertices.
-            name: Name for messages.
+            name: Name for messages, or the path that the arrays are of.
             strict: Whether to refuse a mesh that has a defect, repairable or not.
 
         Raises:
@@ -112,7 +116,7 @@ class Mesh:
                 is set and there is a defect.
         """
         findings = Findings()
-        return _take_in(vertices, triangles, name, 1.0, findings, strict)
+        return _take_in(vertices, triangles, os.fspath(name), 1.0, findings, strict)
 
 
 def load_mesh(

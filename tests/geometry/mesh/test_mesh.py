@@ -1,8 +1,10 @@
 """Mesh intake: what is refused, what is repaired, and that nothing is silent."""
 
+import json
 import logging
 import os
 from itertools import pairwise
+from pathlib import Path
 
 import mesh_samples
 import numpy as np
@@ -282,6 +284,11 @@ def test_a_chain_of_zero_area_triangles_leaves_no_crack():
     mesh = Mesh.from_arrays(V, np.concatenate([fan, slivers, F[1:]]))
     assert codes(mesh) == {"zero-area-faces": 5}
     assert mesh.report.solids == 1 and mesh.report.area == pytest.approx(6)
+
+
+def test_a_mesh_may_be_named_by_its_path():
+    mesh = Mesh.from_arrays(*box(), name=Path("box.obj"))
+    assert json.loads(json.dumps(mesh.report.to_dict()))["source"] == "box.obj"
 
 
 # What is left as it is, by name.
