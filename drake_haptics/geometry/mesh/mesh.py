@@ -138,6 +138,7 @@ def load_mesh(
 
     Raises:
         MeshError: The file cannot be read, or for the reasons in `Mesh.from_arrays`.
+        TypeError: The unit is not a text, or the scale not a number.
     """
     factor = meters_per_unit(unit, scale)
     raw = read_mesh_file(path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from drake_haptics.common.errors import MeshError
+from drake_haptics.common.type_checks import require_kinds
 
 METERS_PER_UNIT: dict[str, float] = {
     "m": 1.0,
@@ -55,7 +56,9 @@ def meters_per_unit(unit: str | None, scale: float | None) -> float:
     Raises:
         MeshError: Both are given, the unit is unknown, or the scale is not a positive
             finite number.
+        TypeError: The unit is not a text, or the scale not a number.
     """
+    require_kinds(unit=(unit, str | None), scale=(scale, float | None))
     if unit is not None and scale is not None:
         raise MeshError(
             f"both unit={unit!r} and scale={scale!r} are given; give one of them"

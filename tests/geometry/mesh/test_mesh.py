@@ -160,6 +160,20 @@ def test_a_wrong_unit_is_refused(tmp_path, options, message):
         load_mesh(tmp_path / "box.npz", **options)
 
 
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"unit": ["mm"]}, "unit must be a text or None, is of type list"),
+        ({"scale": "0.001"}, "scale must be a number or None, is the str '0.001'"),
+        ({"scale": [1.0, 1.0, -1.0]}, "scale must be a number or None"),
+    ],
+)
+def test_a_unit_of_the_wrong_type_is_refused_by_name(tmp_path, options, message):
+    np.savez(tmp_path / "box.npz", V=box()[0], F=box()[1])
+    with pytest.raises(TypeError, match=message):
+        load_mesh(tmp_path / "box.npz", **options)
+
+
 # What is accepted as it is.
 
 
