@@ -86,6 +86,12 @@ class Mesh:
     components: tuple[Component, ...]
     report: MeshReport
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False  # pickles and deep copies have no flags
+
     def __repr__(self) -> str:
         size_mm = " × ".join(f"{1e3 * side:.4g}" for side in self.report.extent)
         return (

@@ -1,8 +1,10 @@
 """Mesh intake: what is refused, what is repaired, and that nothing is silent."""
 
+import copy
 import json
 import logging
 import os
+import pickle
 from itertools import pairwise
 from pathlib import Path
 
@@ -298,6 +300,15 @@ def test_a_chain_of_zero_area_triangles_leaves_no_crack():
     mesh = Mesh.from_arrays(V, np.concatenate([fan, slivers, F[1:]]))
     assert codes(mesh) == {"zero-area-faces": 5}
     assert mesh.report.solids == 1 and mesh.report.area == pytest.approx(6)
+
+
+@pytest.mark.parametrize(
+    "copied", [copy.deepcopy, lambda m: pickle.loads(pickle.dumps(m))]
+)
+def test_a_copy_is_read_only_too(copied):
+    mesh = copied(Mesh.from_arrays(*box()))
+    arrays = (mesh.vertices, mesh.triangles, mesh.component_of_triangle, mesh.solid)
+    assert not any(array.flags.writeable for array in arrays)
 
 
 def test_a_mesh_may_be_named_by_its_path():
