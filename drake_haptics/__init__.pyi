@@ -49,9 +49,7 @@ from .rendering.add_haptic_rendering import (
     AddAppliedSpatialForce as AddAppliedSpatialForce,
 )
 from .rendering.add_haptic_rendering import AddHapticRendering as AddHapticRendering
-from .rendering.config import (
-    ApplyHapticRenderingConfig as ApplyHapticRenderingConfig,
-)
+from .rendering.config import ApplyHapticRenderingConfig as ApplyHapticRenderingConfig
 from .rendering.config import HapticRenderingConfig as HapticRenderingConfig
 from .rendering.config import (
     load_haptic_rendering_config as load_haptic_rendering_config,

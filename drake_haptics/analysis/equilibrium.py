@@ -23,10 +23,7 @@ from drake_haptics.analysis.preconditions import (
     check_system_and_context,
     explain_drake_errors,
 )
-from drake_haptics.analysis.sampled_map import (
-    SampledMap,
-    set_state,
-)
+from drake_haptics.analysis.sampled_map import SampledMap, set_state
 from drake_haptics.common.value_checks import check_at_least, check_positive
 
 # Singular values below this part of the largest belong to directions that nothing

@@ -38,11 +38,7 @@ from drake_haptics.analysis.preconditions import (
     check_system_and_context,
     explain_drake_errors,
 )
-from drake_haptics.analysis.sampled_map import (
-    extract_gradient,
-    get_state,
-    set_state,
-)
+from drake_haptics.analysis.sampled_map import extract_gradient, get_state, set_state
 from drake_haptics.common.value_checks import check_positive
 
 # Periods are taken for fractions of a second with denominators up to this.

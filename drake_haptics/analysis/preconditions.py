@@ -22,11 +22,7 @@ from pydrake.systems.analysis import (
 )
 from pydrake.systems.framework import Context, System
 
-from drake_haptics.analysis.diagram_systems import (
-    Timing,
-    calc_path,
-    walk_leaves,
-)
+from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.common.value_checks import check_positive
 

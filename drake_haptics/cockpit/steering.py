@@ -12,11 +12,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit.handle_holder import DEVICE, HAND, HandleHolder
-from drake_haptics.cockpit.scene_changes import (
-    SCENE_VERBS,
-    ChangeError,
-    SceneChanges,
-)
+from drake_haptics.cockpit.scene_changes import SCENE_VERBS, ChangeError, SceneChanges
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.simulation.live_values import (

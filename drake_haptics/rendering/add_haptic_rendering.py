@@ -23,10 +23,7 @@ from drake_haptics.rendering.bodies import (
     find_environment,
     make_rendered_bodies,
 )
-from drake_haptics.rendering.checks import (
-    check_rendering_stiffness,
-    make_size_warnings,
-)
+from drake_haptics.rendering.checks import check_rendering_stiffness, make_size_warnings
 from drake_haptics.rendering.haptic_rendering import HapticRendering
 from drake_haptics.rendering.proxy import check_handle
 from drake_haptics.scene.contact_law import calc_first_touch

@@ -8,10 +8,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.loop.add_haptic_loop import (
-    check_device_period,
-    make_coupling_gains,
-)
+from drake_haptics.loop.add_haptic_loop import check_device_period, make_coupling_gains
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.wiring import RenderingWiring

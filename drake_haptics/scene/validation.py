@@ -13,11 +13,7 @@ from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.decomposition.decompose import METHODS
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.parsing.model_file import is_model_file
-from drake_haptics.scene.contact_law import (
-    LAWS,
-    check_constraint_law,
-    is_constraint,
-)
+from drake_haptics.scene.contact_law import LAWS, check_constraint_law, is_constraint
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,

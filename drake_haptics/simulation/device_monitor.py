@@ -6,12 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable
 
-from drake_haptics.device.backend import (
-    DeviceBackend,
-    DeviceReading,
-    Fault,
-    GateState,
-)
+from drake_haptics.device.backend import DeviceBackend, DeviceReading, Fault, GateState
 
 # A driver that has sent nothing new for this long is not merely late.
 SILENT_S = 1.0

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import (
-    Context,
-    DiscreteValues,
-    LeafSystem,
-    State,
-)
+from pydrake.systems.framework import Context, DiscreteValues, LeafSystem, State
 
 from drake_haptics._core import ArmDynamics
 from drake_haptics.common.value_checks import check_at_least, check_positive

@@ -7,11 +7,7 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from pydrake.systems.framework import (
-    Context,
-    DiscreteValues,
-    EventStatus,
-)
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus
 
 from drake_haptics._core import AutoDiffVector
 from drake_haptics.common.value_checks import check_positive

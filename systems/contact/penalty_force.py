@@ -9,10 +9,7 @@ from typing import Any
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-)
+from pydrake.systems.framework import BasicVector, Context
 
 from drake_haptics._core import (
     AutoDiffPenaltyWrench,

@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from pydrake.systems.framework import (
-    Context,
-    DiscreteValues,
-    EventStatus,
-)
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus
 
 from drake_haptics._core import AutoDiffVector
 from drake_haptics.common.value_checks import check_positive

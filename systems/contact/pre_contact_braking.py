@@ -6,11 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    ValueProducer,
-)
+from pydrake.systems.framework import BasicVector, Context, ValueProducer
 
 from drake_haptics._core import AutoDiffVector, BrakingGains, pre_contact_braking
 from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions

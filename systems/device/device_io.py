@@ -13,12 +13,7 @@ from pydrake.systems.framework import (
     State,
 )
 
-from drake_haptics._core import (
-    ConstraintStepper,
-    ContactServo,
-    FrameChange,
-    ServoTool,
-)
+from drake_haptics._core import ConstraintStepper, ContactServo, FrameChange, ServoTool
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import (

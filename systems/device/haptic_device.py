@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import (
-    Diagram,
-    DiagramBuilder,
-    System,
-)
+from pydrake.systems.framework import Diagram, DiagramBuilder, System
 
 from drake_haptics._core import ConstraintStepper, ContactServo
 from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold

@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from pydrake.systems.framework import (
-    Context,
-    Diagram,
-    DiagramBuilder,
-    DiscreteValues,
-)
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues
 
 from drake_haptics._core import AutoDiffVector, limit_coupling, limit_wrench
 from drake_haptics.common.value_checks import check_at_least, check_positive

@@ -7,12 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    LeafSystem,
-    State,
-)
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 
 from drake_haptics import _core
 from drake_haptics.common.value_checks import check_positive

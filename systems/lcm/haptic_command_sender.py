@@ -6,11 +6,7 @@ import math
 import secrets
 
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import (
-    Context,
-    DiscreteValues,
-    LeafSystem,
-)
+from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
 
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.lcm.haptic_messages import (

@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from pydrake.common.value import Value
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    LeafSystem,
-)
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from drake_haptics.device.lcm.haptic_messages import find_flaw, lcmt_haptic_status
 

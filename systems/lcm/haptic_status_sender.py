@@ -5,10 +5,7 @@ from __future__ import annotations
 import secrets
 
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import (
-    Context,
-    LeafSystem,
-)
+from pydrake.systems.framework import Context, LeafSystem
 
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.gate import GateStatus

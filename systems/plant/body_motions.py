@@ -11,11 +11,7 @@ from pydrake.common.value import AbstractValue
 from pydrake.math import RigidTransform_
 from pydrake.multibody.math import SpatialVelocity_
 from pydrake.multibody.tree import BodyIndex
-from pydrake.systems.framework import (
-    Diagram,
-    DiagramBuilder,
-    LeafSystem_,
-)
+from pydrake.systems.framework import Diagram, DiagramBuilder, LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics.systems.framework.differentiable_system import (

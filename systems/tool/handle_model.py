@@ -6,11 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    LeafSystem,
-)
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from drake_haptics._core import handle_slopes
 from drake_haptics.systems.framework.differentiable_system import (

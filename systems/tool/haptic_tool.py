@@ -7,12 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import (
-    Context,
-    Diagram,
-    DiagramBuilder,
-    DiscreteValues,
-)
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues
 
 from drake_haptics._core import AutoDiffVector, RigidToolDynamics
 from drake_haptics.common.pose_vector import pose_to_vector

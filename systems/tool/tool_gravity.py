@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-)
+from pydrake.systems.framework import BasicVector, Context
 
 from drake_haptics._core import AutoDiffVector, tool_weight
 from drake_haptics.common.value_checks import check_positive

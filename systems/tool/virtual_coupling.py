@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    Diagram,
-    DiagramBuilder,
-)
+from pydrake.systems.framework import BasicVector, Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics._core import AutoDiffVector, CouplingGains, joined_coupling_wrench

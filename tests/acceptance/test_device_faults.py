@@ -14,13 +14,7 @@ import threading
 import time
 
 import pytest
-from driver_process import (
-    HOST,
-    WatchedLink,
-    check_figures,
-    device_command,
-    running,
-)
+from driver_process import HOST, WatchedLink, check_figures, device_command, running
 from lossy_link import Trouble
 from struct_host import ACTIVE, FAULT, IDLE, SHORT_TTL_S, StructHost, pack_command
 

@@ -7,11 +7,7 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import (
-    DiagramBuilder,
-    LeafSystem,
-    LeafSystem_,
-)
+from pydrake.systems.framework import DiagramBuilder, LeafSystem, LeafSystem_
 from pydrake.systems.primitives import Linearize, LinearSystem
 from pydrake.systems.scalar_conversion import TemplateSystem
 from wall_loop import PERIOD, make_loop, make_mass

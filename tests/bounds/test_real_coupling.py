@@ -7,10 +7,7 @@ from box_scenes import over_a_plate
 from fake_device import ScriptedDevice
 from other_arm import PRESET, write_preset
 
-from drake_haptics.bounds.held_handle import (
-    check_real_coupling,
-    check_scene_coupling,
-)
+from drake_haptics.bounds.held_handle import check_real_coupling, check_scene_coupling
 from drake_haptics.cockpit.scene_changes import CouplingAdvice
 from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram

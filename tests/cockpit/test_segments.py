@@ -7,13 +7,7 @@ import time
 import numpy as np
 import pytest
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT
-from cockpit_rig import (
-    FRICTION,
-    MOUSE,
-    STIFFER,
-    CockpitRig,
-    find_tool,
-)
+from cockpit_rig import FRICTION, MOUSE, STIFFER, CockpitRig, find_tool
 from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 

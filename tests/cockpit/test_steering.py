@@ -5,12 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from cockpit_rig import (
-    FRICTION,
-    MOUSE,
-    STIFFER,
-    find_tool,
-)
+from cockpit_rig import FRICTION, MOUSE, STIFFER, find_tool
 
 from drake_haptics.cockpit.scene_changes import EFFECTS
 from drake_haptics.loop.builder import BuildHapticDiagram

@@ -15,14 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from degenerate_scenes import Run
-from threads import (
-    AXIAL_PLAY_M,
-    AXIAL_SHARE,
-    CONTACTS,
-    PITCH_M,
-    make_bolt,
-    turn_bolt,
-)
+from threads import AXIAL_PLAY_M, AXIAL_SHARE, CONTACTS, PITCH_M, make_bolt, turn_bolt
 
 from drake_haptics.scene.schema import ContactParameters
 

@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 from plant_scenes import PlantScene
-from pydrake.geometry import (
-    Box,
-    CollisionFilterDeclaration,
-    GeometrySet,
-    Role,
-    Sphere,
-)
+from pydrake.geometry import Box, CollisionFilterDeclaration, GeometrySet, Role, Sphere
 from pydrake.math import RigidTransform
 from pydrake.multibody.tree import (
     FixedOffsetFrame,

@@ -11,13 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from autodiff_check import (
-    REACH,
-    derivative_errors,
-    flatten,
-    flatten_gradients,
-    seeded,
-)
+from autodiff_check import REACH, derivative_errors, flatten, flatten_gradients, seeded
 from scipy.spatial.transform import Rotation
 from touching_poses import touching_pose
 

@@ -2,11 +2,7 @@
 
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
-from pydrake.systems.framework import (
-    BasicVector_,
-    LeafSystem_,
-    ValueProducer,
-)
+from pydrake.systems.framework import BasicVector_, LeafSystem_, ValueProducer
 from pydrake.systems.scalar_conversion import TemplateSystem
 from wall_loop import PERIOD
 

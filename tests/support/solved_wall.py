@@ -18,12 +18,7 @@ from pydrake.systems.primitives import ZeroOrderHold
 from servo_loop import DAMPING_NS_PER_M, MASS_KG, make_flow
 from slider_device import Slider
 
-from drake_haptics._core import (
-    ConstraintStepper,
-    CouplingGains,
-    ServoLaw,
-    ServoTool,
-)
+from drake_haptics._core import ConstraintStepper, CouplingGains, ServoLaw, ServoTool
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters

@@ -5,11 +5,7 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.web.handle import (
-    keep_near,
-    move_in_view,
-    turn_in_view,
-)
+from drake_haptics.web.handle import keep_near, move_in_view, turn_in_view
 
 # Somewhere, not straight.
 X_WC = RigidTransform(RollPitchYaw(-2.0, 0.2, 0.7), [0.3, -0.4, 0.5])

@@ -7,12 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from drake_haptics.evaluation.models import WRENCH_HALF_THICKNESS_M
-from shapes.surface import (
-    Surface,
-    SurfaceBuilder,
-    circle,
-    opening_loop,
-)
+from shapes.surface import Surface, SurfaceBuilder, circle, opening_loop
 
 _SECTORS = 24
 # The head from the striking face to the root of the claw, (radius, height) in m. Rows

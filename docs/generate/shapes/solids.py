@@ -4,13 +4,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from shapes.surface import (
-    Surface,
-    SurfaceBuilder,
-    circle,
-    loft,
-    revolve,
-)
+from shapes.surface import Surface, SurfaceBuilder, circle, loft, revolve
 
 _PEG_RADIUS_M = 0.012
 _PEG_SIDES = 24

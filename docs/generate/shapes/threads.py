@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from shapes.surface import (
-    Surface,
-    SurfaceBuilder,
-    circle,
-    loft,
-)
+from shapes.surface import Surface, SurfaceBuilder, circle, loft
 
 THREAD_PITCH_M = 0.008
 """Advance along the axis in a turn, m; the thread is right-handed."""

@@ -9,11 +9,7 @@ from typing import Any, TypeVar
 
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.measuring.timing import TickTimes
-from drake_haptics.report.plain_data import (
-    name_number,
-    read_figures,
-    to_plain_data,
-)
+from drake_haptics.report.plain_data import name_number, read_figures, to_plain_data
 
 _Figures = TypeVar("_Figures")
 

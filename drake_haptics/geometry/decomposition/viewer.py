@@ -17,10 +17,7 @@ from drake_haptics.common.colors import BACKGROUND_BOTTOM, BACKGROUND_TOP, VIRTU
 from drake_haptics.common.one_line import count
 from drake_haptics.common.web_page import extend_page
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.decomposition.pieces import (
-    ColoredTriangles,
-    piece_surfaces,
-)
+from drake_haptics.geometry.decomposition.pieces import ColoredTriangles, piece_surfaces
 
 # Largest extent of the drawn mesh, m, since the camera suits objects of about a meter.
 _DRAWN_EXTENT_M = 1.5

@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from study_functions import (
-    Journal,
-    calc_matrix_figures,
-    square,
-    wait_and_tell_process,
-)
+from study_functions import Journal, calc_matrix_figures, square, wait_and_tell_process
 
 from drake_haptics.analysis.jobs.exact_json import to_exact_json
 from drake_haptics.analysis.jobs.pool import SerialExecutor

@@ -13,9 +13,7 @@ import time
 from pathlib import Path
 
 import pytest
-from study_functions import (
-    Journal,
-)
+from study_functions import Journal
 from waiting import wait_until
 
 from drake_haptics.analysis.jobs.pool import SerialExecutor

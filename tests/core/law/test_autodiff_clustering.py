@@ -8,13 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 from contact_samples import box
-from contact_state import (
-    METHODS,
-    State,
-    T,
-    check_every_column,
-    random_states,
-)
+from contact_state import METHODS, State, T, check_every_column, random_states
 
 from drake_haptics import _core
 

@@ -6,10 +6,7 @@ import copy
 
 import numpy as np
 import pytest
-from autodiff_check import (
-    constant,
-    seeded,
-)
+from autodiff_check import constant, seeded
 from contact_samples import contacts_at
 from contact_state import State, T, check_every_column, random_states
 from scipy.spatial.transform import Rotation

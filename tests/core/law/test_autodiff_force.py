@@ -6,17 +6,8 @@ import copy
 
 import numpy as np
 import pytest
-from autodiff_check import (
-    constant,
-)
-from contact_state import (
-    KV,
-    METHODS,
-    K,
-    State,
-    check_every_column,
-    random_states,
-)
+from autodiff_check import constant
+from contact_state import KV, METHODS, K, State, check_every_column, random_states
 
 from drake_haptics import _core
 

@@ -8,12 +8,7 @@ import pytest
 from haply_service import HaplyService, Inverse3
 from waiting import wait_until
 
-from drake_haptics.device.backend import (
-    DeviceCommand,
-    DeviceError,
-    Fault,
-    GateState,
-)
+from drake_haptics.device.backend import DeviceCommand, DeviceError, Fault, GateState
 from drake_haptics.device.driver import read_clock_ns
 from drake_haptics.device.haply import haply_device
 from drake_haptics.device.haply.haply_device import HaplyDevice

@@ -5,22 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lcm_rig import (
-    MAX_FORCE_N,
-    PERIOD_S,
-    add_device,
-    make_axis,
-    make_simulator,
-)
+from lcm_rig import MAX_FORCE_N, PERIOD_S, add_device, make_axis, make_simulator
 from pydrake.lcm import DrakeLcm
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.device.backend import (
-    DeviceCommand,
-    DeviceError,
-    Fault,
-    GateState,
-)
+from drake_haptics.device.backend import DeviceCommand, DeviceError, Fault, GateState
 from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
     lcmt_haptic_status,

@@ -6,13 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hard_cases.bodies import (
-    box,
-    cone,
-    cube,
-    roof,
-    tetrahedron,
-)
+from hard_cases.bodies import box, cone, cube, roof, tetrahedron
 from hard_cases.passages import (
     NEAR_ZERO,
     Passage,

@@ -6,22 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hard_cases.bodies import (
-    ball,
-    blob,
-    box,
-    cone,
-    cube,
-    disc,
-    roof,
-)
-from hard_cases.passages import (
-    Passage,
-    both_ways,
-    hard_case,
-    moved,
-    pose,
-)
+from hard_cases.bodies import ball, blob, box, cone, cube, disc, roof
+from hard_cases.passages import Passage, both_ways, hard_case, moved, pose
 
 
 @hard_case("tumbling through alignment")

@@ -7,13 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from hard_cases.bodies import (
-    ball,
-    blob,
-    cube,
-    disc,
-    polygon,
-)
+from hard_cases.bodies import ball, blob, cube, disc, polygon
 from hard_cases.passages import (
     Passage,
     both_ways,

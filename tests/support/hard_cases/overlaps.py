@@ -6,23 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hard_cases.bodies import (
-    ball,
-    blob,
-    box,
-    cone,
-    cube,
-    disc,
-    tetrahedron,
-)
-from hard_cases.passages import (
-    Passage,
-    both_ways,
-    hard_case,
-    moved,
-    pose,
-    random_pose,
-)
+from hard_cases.bodies import ball, blob, box, cone, cube, disc, tetrahedron
+from hard_cases.passages import Passage, both_ways, hard_case, moved, pose, random_pose
 
 
 @hard_case("containment")

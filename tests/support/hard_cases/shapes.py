@@ -7,12 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from hard_cases.bodies import (
-    FLAT,
-    blob,
-    box,
-    cube,
-)
+from hard_cases.bodies import FLAT, blob, box, cube
 from hard_cases.passages import (
     NEAR_ZERO,
     Passage,

@@ -17,9 +17,7 @@ from twin_rig import (
     make_simulator,
     make_twin,
 )
-from twin_rig import (
-    PRESET as PREMIUM,
-)
+from twin_rig import PRESET as PREMIUM
 
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.sampled_linearization import linearize_sampled

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
-from visualizer_rig import (
-    FakeMeshcat,
-    make_context,
-    make_visualizer,
-)
+from visualizer_rig import FakeMeshcat, make_context, make_visualizer
 
 from drake_haptics.systems.output import haptic_visualizer
 
