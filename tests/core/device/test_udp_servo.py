@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -35,9 +36,8 @@ def driver():
 
 @pytest.fixture
 def servo(driver):
-    servo = UdpServo("127.0.0.1", driver.port, **LONG)
-    yield servo
-    servo.close()
+    with closing(UdpServo("127.0.0.1", driver.port, **LONG)) as servo:
+        yield servo
 
 
 def publish(servo, F=PUSH, K=None):
@@ -131,10 +131,9 @@ def test_the_device_says_what_the_limits_are(driver, servo):
 
 
 def test_the_host_may_allow_less_than_the_device(driver):
-    servo = UdpServo(
-        "127.0.0.1", driver.port, max_force_N=1.5, max_torque_Nm=0.1, **LONG
-    )
-    try:
+    with closing(
+        UdpServo("127.0.0.1", driver.port, max_force_N=1.5, max_torque_Nm=0.1, **LONG)
+    ) as servo:
         connect(driver, servo)
         # Within the limits when it was given, beyond them further in.
         publish(servo, F=np.array([0, 0, 0, 1.4, 0, 0]), K=1e3 * np.eye(6))
@@ -145,13 +144,10 @@ def test_the_host_may_allow_less_than_the_device(driver):
         np.testing.assert_allclose(command.F_Ho_B, [-0.1, 0, 0, 1.4, 0, 0], atol=1e-12)
         command = driver.exchange(max_force_N=float("nan"), max_torque_Nm=float("nan"))
         assert command.F_Ho_B == (0.0,) * 6
-    finally:
-        servo.close()
 
 
 def test_a_wrench_that_is_not_renewed_is_released(driver):
-    servo = UdpServo("127.0.0.1", driver.port, ttl_s=5.0, hold_s=0.2)
-    try:
+    with closing(UdpServo("127.0.0.1", driver.port, ttl_s=5.0, hold_s=0.2)) as servo:
         connect(driver, servo)
         wait_until(lambda: publish(servo) or driver.exchange().F_Ho_B[3] > 0.0)
         wait_until(lambda: driver.exchange().F_Ho_B[3] == 0.0)
@@ -159,8 +155,6 @@ def test_a_wrench_that_is_not_renewed_is_released(driver):
         command = driver.exchange()
         assert command.F_Ho_B == (0.0,) * 6
         assert command.enable
-    finally:
-        servo.close()
 
 
 def test_what_is_late_lost_or_damaged_is_counted_and_not_used(driver, servo):
@@ -246,8 +240,7 @@ def test_a_driver_that_was_restarted_is_not_enabled(driver, servo):
 
 
 def test_a_driver_that_is_silent_is_looked_for_disabled(driver):
-    servo = UdpServo("127.0.0.1", driver.port, **SHORT)
-    try:
+    with closing(UdpServo("127.0.0.1", driver.port, **SHORT)) as servo:
         connect(driver, servo)
         wait_until(lambda: not driver.receive().enable)
         state = servo.read()
@@ -261,13 +254,10 @@ def test_a_driver_that_is_silent_is_looked_for_disabled(driver):
         assert not driver.exchange(gate=IDLE).enable
         servo.recover()
         wait_until(lambda: driver.exchange(gate=IDLE).enable)
-    finally:
-        servo.close()
 
 
 def test_a_driver_that_has_gone_is_not_active_because_it_is_wanted_back(driver):
-    servo = UdpServo("127.0.0.1", driver.port, **SHORT)
-    try:
+    with closing(UdpServo("127.0.0.1", driver.port, **SHORT)) as servo:
         connect(driver, servo)
         engage(driver, servo, gate=ACTIVE)
         wait_until(lambda: not driver.receive().enable)
@@ -278,13 +268,10 @@ def test_a_driver_that_has_gone_is_not_active_because_it_is_wanted_back(driver):
         assert (servo.read().gate, servo.read().fault) == (FAULT, STALE)
         wait_until(lambda: driver.exchange(gate=IDLE, boot=8).enable)
         wait_until(lambda: servo.read().gate == IDLE)
-    finally:
-        servo.close()
 
 
 def test_after_a_flood_only_the_newest_state_is_answered(driver):
-    servo = UdpServo("127.0.0.1", driver.port, max_rate_hz=20.0, **LONG)
-    try:
+    with closing(UdpServo("127.0.0.1", driver.port, max_rate_hz=20.0, **LONG)) as servo:
         driver.receive()
         start = time.monotonic()
         for _ in range(60):  # fewer than the system's buffer holds
@@ -292,8 +279,6 @@ def test_after_a_flood_only_the_newest_state_is_answered(driver):
         last = driver.exchange()
         assert last.sequence <= 4 + 20 * (time.monotonic() - start)
         wait_until(lambda: servo.status().received == 61)
-    finally:
-        servo.close()
 
 
 def test_closing_disables_several_times_and_may_be_repeated(driver, servo):
@@ -322,13 +307,10 @@ def test_a_closed_socket_on_the_other_side_is_silence(driver):
     """The system tells by an error that nobody listens there."""
     with StructDriver() as gone:
         port = gone.port
-    servo = UdpServo("127.0.0.1", port)
-    try:
+    with closing(UdpServo("127.0.0.1", port)) as servo:
         wait_until(lambda: servo.status().sent >= 5)
         assert servo.status().is_running
         assert servo.read() is None
-    finally:
-        servo.close()
 
 
 def test_it_speaks_ipv6():
@@ -337,12 +319,9 @@ def test_it_speaks_ipv6():
     except OSError:
         pytest.skip("no IPv6 here")
     with driver:
-        servo = UdpServo("::1", driver.port, **LONG)
-        try:
+        with closing(UdpServo("::1", driver.port, **LONG)) as servo:
             connect(driver, servo)
             assert servo.local_port > 0
-        finally:
-            servo.close()
 
 
 def test_a_fork_neither_hangs_nor_disables_the_device(driver, servo):
