@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -11,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_haptics.common.one_line import count
-from drake_haptics.geometry.mesh.report import length
+from drake_haptics.geometry.mesh.report import length, write_text
 
 # A mesh with more pieces is probably a scan, whose noise is concave everywhere.
 _MANY_PIECES = 2000
@@ -95,12 +94,7 @@ class DecompositionReport:
                 style="yellow",
             )
 
-    def __str__(self) -> str:
-        out = io.StringIO()
-        # In a notebook rich would display it instead of returning text.
-        console = Console(file=out, width=80, color_system=None, force_jupyter=False)
-        console.print(self)
-        return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+    __str__ = write_text
 
 
 def _duration(seconds: float) -> str:

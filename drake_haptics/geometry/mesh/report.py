@@ -29,6 +29,15 @@ class Severity(str, Enum):
     DEFECT = "defect"
 
 
+def write_text(report: object) -> str:
+    """Returns a report that rich can draw as text of 80 columns, without colors."""
+    out = io.StringIO()
+    # In a notebook rich would display it instead of returning text.
+    console = Console(file=out, width=80, color_system=None, force_jupyter=False)
+    console.print(report)
+    return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+
+
 _COLORS = {
     Severity.DEFECT: "red",
     Severity.QUESTION: "magenta",
@@ -233,12 +242,7 @@ class MeshReport:
             table.add_row(severity, sentence)
         return table
 
-    def __str__(self) -> str:
-        out = io.StringIO()
-        # In a notebook rich would display it instead of returning text.
-        console = Console(file=out, width=80, color_system=None, force_jupyter=False)
-        console.print(self)
-        return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+    __str__ = write_text
 
 
 def length(meters: float) -> str:
