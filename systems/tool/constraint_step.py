@@ -84,21 +84,10 @@ class _ConstraintStep(DifferentiableSystem):
         plant: MultibodyPlant | None,
         start_servo: Callable[[ConstraintStepper], ContactServo] | None,
     ):
-        """Constructs the system.
+        """Constructs the system; see `ConstraintToolStep` for the arguments.
 
-        Args:
-            make_stepper: Function that makes the step of the core with gains of the
-                coupling.
-            objects: Objects that the tool can meet.
-            gains: Default gains of the coupling.
-            X_HT: Pose of the tool in the handle at which the spring rests.
-            X_WT: Default pose of the tool, which starts at rest.
-            tick_s: The tick, s.
-            step_s: Duration of a step, s.
-            wrench_names: A name for each input of another wrench.
-            plant: Plant with a body that is the handle; see `ConstraintToolStep`.
-            start_servo: Function that starts a thread to step the tool; see
-                `ConstraintToolStep`.
+        `make_stepper` makes the step of the core, of `step_s`, with gains of the
+        coupling.
         """
         super().__init__()
         self._make_stepper = make_stepper
