@@ -85,9 +85,10 @@ def draw_study(study: AccuracyStudy) -> Figure:
 
 
 def _label_setting(row: Row, is_knee: bool) -> Label:
-    words = _describe_setting(row, is_knee)
-    error_N = row.force_error_N
-    return Label(row.native_us, error_N, words, FRONT, is_framed=True)
+    assert row.errors is not None
+    knob = f"knee: {row.setting.knob}" if is_knee else row.setting.knob
+    words = f"{knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"
+    return Label(row.native_us, row.force_error_N, words, FRONT, is_framed=True)
 
 
 def _label_knob(knob: _Knob, axes: Axes) -> Label:
@@ -213,9 +214,3 @@ def _limit_errors(axes: Axes) -> None:
 
 def _name_peer(peer: PeerRow) -> str:
     return f"{peer.library}, {peer.method}"
-
-
-def _describe_setting(row: Row, is_knee: bool) -> str:
-    assert row.errors is not None
-    knob = f"knee: {row.setting.knob}" if is_knee else row.setting.knob
-    return f"{knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"

@@ -88,36 +88,14 @@ class FoundContacts:
 
     Attributes:
         start: (k + 1,) first rows: tick i has the rows from start[i] to start[i + 1].
-        distance: (n,) signed distance, m.
-        nhat_BA_W: (n, 3) unit normal out of the object into the tool.
-        p_WCa: (n, 3) witness point on the tool, m.
-        p_WCb: (n, 3) witness point on the object, m.
-        object_index: (n,) index of the object.
+        rows: (n, 11) signed distance, m; unit normal out of the object into the tool;
+            witness points on the tool and on the object, m; and the object's index.
         seconds: (k,) times of finding them, s.
     """
 
     start: np.ndarray
-    distance: np.ndarray
-    nhat_BA_W: np.ndarray
-    p_WCa: np.ndarray
-    p_WCb: np.ndarray
-    object_index: np.ndarray
+    rows: np.ndarray
     seconds: np.ndarray
-
-    @staticmethod
-    def of(start: np.ndarray, rows: np.ndarray, seconds: np.ndarray) -> FoundContacts:
-        """Returns contacts whose numbers are in rows.
-
-        Args:
-            start: (k + 1,) first rows; see the attribute.
-            rows: (n, 11) distance, normal, both witness points, and the object.
-            seconds: (k,) times of finding them, s.
-        """
-        distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
-        index = owner[:, 0].astype(np.int32)
-        return FoundContacts(
-            start, distance[:, 0], normal, p_WCa, p_WCb, index, seconds
-        )
 
 
 def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
@@ -129,21 +107,18 @@ def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
     cluster, force = part.make_clustering(), part.make_force()
     F_To_W = np.zeros((len(motion), 6))
     distance = np.full(len(motion), np.inf)
-    valid = np.isfinite(found.nhat_BA_W).all(axis=1)
-    valid &= found.distance < part.tolerance_m
+    valid = np.isfinite(found.rows[:, 1:4]).all(axis=1)
+    valid &= found.rows[:, 0] < part.tolerance_m
     for k in range(len(motion)):
-        rows = np.arange(found.start[k], found.start[k + 1])
-        rows = rows[valid[rows]]
+        tick = slice(found.start[k], found.start[k + 1])
+        rows = found.rows[tick][valid[tick]]
         if len(rows) == 0:
             continue
-        distance[k] = found.distance[rows].min()
-        rows = rows[np.argsort(found.object_index[rows], kind="stable")]
+        rows = rows[np.argsort(rows[:, 10], kind="stable")]
+        d, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
+        distance[k] = d.min()
         contacts = _core.contact_set(
-            found.distance[rows],
-            found.nhat_BA_W[rows],
-            found.p_WCa[rows],
-            found.p_WCb[rows],
-            found.object_index[rows].astype(np.int32),
+            d.ravel(), normal, p_WCa, p_WCb, owner.ravel().astype(np.int32)
         )
         wrench = force(
             clusters=cluster(contacts),

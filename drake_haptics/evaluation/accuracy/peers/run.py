@@ -10,11 +10,10 @@ from importlib.metadata import PackageNotFoundError, version
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.progress import Progress, ignore_progress
-from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, PeerRow
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, PeerRow
 from drake_haptics.evaluation.accuracy.knobs import make_reference
 from drake_haptics.evaluation.accuracy.peers.problem import (
     Answer,
-    PeerAnswers,
     PeerProblem,
     make_peer_problem,
 )
@@ -126,11 +125,12 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
     except (ImportError, HapticsError, RuntimeError, ValueError) as error:
         return _explain(library, method, str(error))
     remark = f", {answers.remark}" if answers.remark else ""
+    F_Tcm_W = shift_wrench(answers.F_To_W, problem.motion.X_WT, truth.p_TTcm)
     return PeerRow(
         library=library,
         method=method.words + remark,
         native=TickTimes.of(answers.seconds),
-        errors=_find_errors(answers, problem, truth),
+        errors=compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth),
     )
 
 
@@ -140,11 +140,6 @@ def _leave_out_effects(scene: Scene) -> Scene:
     for item in bare.environment:
         item.material.friction_coefficient = item.material.shading = None
     return bare
-
-
-def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Errors:
-    F_Tcm_W = shift_wrench(answers.F_To_W, problem.motion.X_WT, truth.p_TTcm)
-    return compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
 
 
 def _explain(library: str, method: PeerMethod, failure_reason: str) -> PeerRow:

@@ -119,23 +119,19 @@ def make_plant(
         add: Function that adds geometry to a body; it takes the plant, the body, the
             object's index or -1 for the tool, and the geometry's pose in the body.
     """
-    # Qhull warns of flat pieces.
-    with quiet_streams(2):
-        return _build(contact_model, X_WO, add)
-
-
-def _build(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakePlant:
     builder = DiagramBuilder()
     config = MultibodyPlantConfig(time_step=0.0, contact_model=contact_model)
-    plant, scene_graph = AddMultibodyPlant(config, builder)
     inertia = SpatialInertia.SolidSphereWithMass(_MASS_KG, _RADIUS_M)
-    tool = plant.AddRigidBody("tool", inertia)
-    add(plant, tool, -1, RigidTransform())
-    for i, pose in enumerate(X_WO):
-        add(plant, plant.world_body(), i, vector_to_pose(pose))
-    plant.Finalize()
-    diagram = builder.Build()
-    return DrakePlant(plant, scene_graph, tool, diagram.CreateDefaultContext())
+    # Qhull warns of flat pieces.
+    with quiet_streams(2):
+        plant, scene_graph = AddMultibodyPlant(config, builder)
+        tool = plant.AddRigidBody("tool", inertia)
+        add(plant, tool, -1, RigidTransform())
+        for i, pose in enumerate(X_WO):
+            add(plant, plant.world_body(), i, vector_to_pose(pose))
+        plant.Finalize()
+        context = builder.Build().CreateDefaultContext()
+    return DrakePlant(plant, scene_graph, tool, context)
 
 
 def answer_on_pieces(problem: PeerProblem) -> PeerAnswers:
@@ -177,7 +173,7 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
         read,
     )
     columns = np.array(rows).reshape(-1, 11)
-    found = FoundContacts.of(np.array(start), columns, seconds)
+    found = FoundContacts(np.array(start), columns, seconds)
     return apply_law(problem, found)
 
 

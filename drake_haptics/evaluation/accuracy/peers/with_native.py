@@ -130,6 +130,6 @@ def _copy_contacts(
     start = np.empty(seconds.shape[1] + 1, dtype=np.int32)
     rows = np.empty((count, _CONTACT_SIZE))
     copy(scene, start, rows)
-    return FoundContacts.of(
+    return FoundContacts(
         start, rows, np.maximum(typical(seconds) - clock_interval(), 0.0)
     )
