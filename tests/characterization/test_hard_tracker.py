@@ -157,30 +157,23 @@ def test_sliding_over_the_seams_of_a_torus_keeps_the_exact_distance() -> None:
         assert found.distance.min() == pytest.approx(truth, abs=1e-7 * major)
 
 
-@pytest.mark.parametrize("thickness", [1e-3, 1e-5])
-def test_a_pin_pushed_through_a_plate_goes_on_pressing_on_its_top(
-    thickness: float,
-) -> None:
-    plate = solid(box(0.05, 0.05, thickness / 2))
-    pin = box(0.002, 0.002, 0.02)
-    tracker = ContactTracker(solid(pin), plate, 1e-3)
-    for z in np.linspace(0.021, 0.006, 400):
-        found = tracker.query(pose([0.003, 0.001, z]), np.eye(4))
-        truth = z - 0.02 - thickness / 2
-        if truth < 1e-3:
-            assert found.distance.min() == pytest.approx(truth, abs=1e-12)
-            np.testing.assert_allclose(found.nhat_BA_W, [[0, 0, 1]], atol=1e-9)
+PIN, BLOCK = (0.002, 0.002, 0.02), (0.03, 0.03, 0.01)
 
 
 @pytest.mark.parametrize("thickness", [1e-3, 1e-5])
-def test_a_plate_pushed_through_a_block_goes_on_pressing_on_its_top(
-    thickness: float,
+@pytest.mark.parametrize("case", ["pin through plate", "plate through block"])
+def test_what_is_pushed_through_goes_on_pressing_on_the_top(
+    case: str, thickness: float
 ) -> None:
-    plate = solid(box(0.005, 0.005, thickness / 2))
-    tracker = ContactTracker(plate, solid(box(0.03, 0.03, 0.01)), 1e-3)
-    for z in np.linspace(0.012, -0.008, 400):
+    half = thickness / 2
+    tool, below, heights = {
+        "pin through plate": (PIN, (0.05, 0.05, half), (0.021, 0.006)),
+        "plate through block": ((0.005, 0.005, half), BLOCK, (0.012, -0.008)),
+    }[case]
+    tracker = ContactTracker(solid(box(*tool)), solid(box(*below)), 1e-3)
+    for z in np.linspace(*heights, 400):
         found = tracker.query(pose([0.003, 0.001, z]), np.eye(4))
-        truth = z - thickness / 2 - 0.01
+        truth = z - tool[2] - below[2]
         if truth < 1e-3:
             assert found.distance.min() == pytest.approx(truth, abs=1e-12)
             np.testing.assert_allclose(found.nhat_BA_W, [[0, 0, 1]], atol=1e-9)

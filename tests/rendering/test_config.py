@@ -104,23 +104,19 @@ def test_a_wrong_key_is_named(tmp_path, old, new, message):
         load(tmp_path, YAML.replace(old, new))
 
 
-def test_a_wrong_role_is_named_in_code_too():
+@pytest.mark.parametrize(
+    ("wrong", "error", "message"),
+    [
+        ({"role": "looks"}, SceneError, "role must be one of"),
+        ({"X_HT": RigidTransform()}, TypeError, r"^X_HT must be a .*\.Pose, is "),
+        ({"X_HT": None}, TypeError, r"^X_HT must be a .*\.Pose, is "),
+    ],
+)
+def test_a_wrong_value_is_named_in_code_too(wrong, error, message):
     scene = make_scene()
-    with pytest.raises(SceneError, match="role must be one of"):
+    with pytest.raises(error, match=message):
         ApplyHapticRenderingConfig(
-            HapticRenderingConfig(tool_body="tool", role="looks"),
-            scene.builder,
-            scene.plant,
-            scene.scene_graph,
-        )
-
-
-@pytest.mark.parametrize("wrong", [RigidTransform(), None])
-def test_a_pose_of_another_type_is_named_in_code(wrong):
-    scene = make_scene()
-    with pytest.raises(TypeError, match=r"^X_HT must be a .*\.Pose, is "):
-        ApplyHapticRenderingConfig(
-            HapticRenderingConfig(tool_body="tool", X_HT=wrong),
+            HapticRenderingConfig(tool_body="tool", **wrong),
             scene.builder,
             scene.plant,
             scene.scene_graph,

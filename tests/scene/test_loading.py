@@ -366,15 +366,16 @@ def test_a_device_that_cannot_hold_it_is_refused(tmp_path, change, complaint):
         make_simulated_device(scene, make_hand_path(scene.hand.path))
 
 
-def test_a_path_too_long_for_the_device_is_refused(tmp_path):
-    scene = load(tmp_path, GOOD.replace("[0, 0, 0.05]", "[0, 0.3, 0]"))
-    with pytest.raises(SceneError, match=r"radius is 0\.12 m"):
-        make_simulated_device(scene, make_hand_path(scene.hand.path))
-
-
-def test_an_unknown_grip_is_refused(tmp_path):
-    scene = load(tmp_path, GOOD.replace("grip: light", "grip: iron"))
-    with pytest.raises(SceneError, match=r"hand\.grip: 'iron' is not one of none"):
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ("[0, 0, 0.05]", "[0, 0.3, 0]", r"radius is 0\.12 m"),
+        ("grip: light", "grip: iron", r"hand\.grip: 'iron' is not one of none"),
+    ],
+)
+def test_a_hand_that_cannot_hold_the_device_is_refused(tmp_path, old, new, complaint):
+    scene = load(tmp_path, GOOD.replace(old, new))
+    with pytest.raises(SceneError, match=complaint):
         make_simulated_device(scene, make_hand_path(scene.hand.path))
 
 

@@ -87,16 +87,10 @@ def check_left_alone(handshake, boot=1):
     assert handshake.choose(4) is True
 
 
-def test_a_device_that_was_started_again_is_left_alone_until_recovery():
+@pytest.mark.parametrize("before", [ACTIVE, FAULT])
+def test_a_device_that_was_started_again_is_left_alone_until_recovery(before):
     handshake = make_enabled()
-    handshake.hear(ACTIVE, 0.1)
-    handshake.hear(replace(IDLE, boot=2), 0.101)
-    check_left_alone(handshake, boot=2)
-
-
-def test_a_device_that_was_started_again_at_fault_is_at_fault_still():
-    handshake = make_enabled()
-    handshake.hear(FAULT, 0.1)
+    handshake.hear(before, 0.1)
     handshake.hear(replace(IDLE, boot=2), 0.101)
     check_left_alone(handshake, boot=2)
 

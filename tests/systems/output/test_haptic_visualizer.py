@@ -254,26 +254,24 @@ def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
     assert not meshcat.objects
 
 
-def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden(meshcat):
+def hide_while_pieces_are_sent(meshcat, view):
     picture = make_picture(meshcat)
     picture.show("pieces", True)
     drawing = picture.draw_views()
     next(drawing)
-    picture.show("ghost", False)
+    picture.show(view, False)
     list(drawing)
     list(picture.draw_views())
+
+
+def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden(meshcat):
+    hide_while_pieces_are_sent(meshcat, "ghost")
     assert meshcat.properties["/haptics/handle", "visible"] is False
     assert meshcat.properties["/haptics/tool/pieces", "visible"] is True
 
 
 def test_pieces_that_are_hidden_while_they_are_sent_are_hidden(meshcat):
-    picture = make_picture(meshcat)
-    picture.show("pieces", True)
-    drawing = picture.draw_views()
-    next(drawing)
-    picture.show("pieces", False)
-    list(drawing)
-    list(picture.draw_views())
+    hide_while_pieces_are_sent(meshcat, "pieces")
     assert "/haptics/tool/pieces/0" in meshcat.objects
     assert meshcat.properties["/haptics/tool/pieces", "visible"] is False
     assert meshcat.properties.get(("/haptics/tool/<object>", "visible"), True)
