@@ -148,8 +148,7 @@ def _peg_in_hole(gains: str) -> WalkScene:
 
     def draw_home(rng: np.random.Generator) -> Home:
         return _home(
-            [*rng.uniform(-5e-5, 5e-5, 2), rng.uniform(4e-3, 9e-3)],
-            _tilted(rng, 2e-3),
+            [*rng.uniform(-5e-5, 5e-5, 2), rng.uniform(4e-3, 9e-3)], _tilted(rng, 2e-3)
         )
 
     solid = decompose(centered, cache=False).core
@@ -177,12 +176,7 @@ def _scattered(gains: str) -> WalkScene:
         return _home(rng.uniform(-1e-3, 1e-3, 3), small)
 
     return _scene(
-        "scattered tips",
-        join_hulls(*tips),
-        join_hulls(*slabs),
-        gains,
-        draw_home,
-        2e-3,
+        "scattered tips", join_hulls(*tips), join_hulls(*slabs), gains, draw_home, 2e-3
     )
 
 

@@ -86,11 +86,7 @@ FIGURES = (
         3,
         timed=True,
     ),
-    Figures(
-        "docs/effects.md",
-        ((f"{_PROGRAMS}/effect_costs.py", "--write"),),
-        15,
-    ),
+    Figures("docs/effects.md", ((f"{_PROGRAMS}/effect_costs.py", "--write"),), 15),
     _table("accuracy", "accuracy", 15, timed=True),
     _table("paper", "paper", 3, *_MESHES, timed=True),
     Figures(

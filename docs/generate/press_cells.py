@@ -135,12 +135,7 @@ def row(cell: Cell, verdicts: Iterable[Verdict]) -> list[str]:
     """Returns a line of the table: the presses, and a text for each of COLUMNS."""
     met = [v for v in verdicts if not v.skipped]
     gains = GAINS[cell.gains]
-    return [
-        cell.solid,
-        cell.motion,
-        cell.gains,
-        *(c.text(met, gains) for c in COLUMNS),
-    ]
+    return [cell.solid, cell.motion, cell.gains, *(c.text(met, gains) for c in COLUMNS)]
 
 
 TITLES = ["solid", "motion", "gains", *(c.title for c in COLUMNS)]

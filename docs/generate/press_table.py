@@ -56,9 +56,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--failures", type=Path, help="file that gets each failure")
     parser.add_argument(
-        "--write",
-        action="store_true",
-        help="write docs/verification/contact-laws.md",
+        "--write", action="store_true", help="write docs/verification/contact-laws.md"
     )
     args = parser.parse_args()
     if args.write and {*args.motions} != {*PAGE_MOTIONS}:

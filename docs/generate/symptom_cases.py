@@ -140,13 +140,7 @@ CASES = (
         {"environment.scale": 1e-3},
         {"environment.scale": 1.0},
     ),
-    Case(
-        "weak",
-        "cup_spoon",
-        "largest force, N",
-        {COUPLING: 50.0},
-        {COUPLING: 800.0},
-    ),
+    Case("weak", "cup_spoon", "largest force, N", {COUPLING: 50.0}, {COUPLING: 800.0}),
     Case(
         "weak",
         "cup_spoon",

@@ -61,10 +61,7 @@ class PeriodMap:
 
 
 def check_return(
-    x: np.ndarray,
-    change: np.ndarray,
-    names: tuple[str, ...],
-    tolerance: float,
+    x: np.ndarray, change: np.ndarray, names: tuple[str, ...], tolerance: float
 ) -> float:
     """Returns the largest relative change of a state over a period.
 

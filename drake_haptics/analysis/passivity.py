@@ -117,10 +117,7 @@ def as_transfer(
             f"H is unstable, |z| = {np.abs(poles).max():.6g}: that is never passive"
         )
     identity = np.eye(len(A))
-    return (
-        _square(lambda z: C @ np.linalg.solve(z * identity - A, B) + D),
-        poles,
-    )
+    return (_square(lambda z: C @ np.linalg.solve(z * identity - A, B) + D), poles)
 
 
 def _matrix(system: object, name: str) -> np.ndarray:

@@ -77,10 +77,7 @@ def draw_sheet(
 def _plot_usage(frequencies_Hz: np.ndarray, usage: np.ndarray, axes: Axes) -> None:
     """Draws the share of the available damping that passivity needs."""
     axes.plot(
-        frequencies_Hz,
-        usage,
-        color=PASSIVITY,
-        label="passivity: damping that it needs",
+        frequencies_Hz, usage, color=PASSIVITY, label="passivity: damping that it needs"
     )
     axes.axhline(1.0, color="black", ls=":", label="the scene's damping")
     axes.set_xlim(0.0, frequencies_Hz[-1])

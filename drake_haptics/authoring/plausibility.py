@@ -83,10 +83,7 @@ def _make_size_warnings(haptic: HapticDiagram) -> list[str]:
 
 
 def _make_size_warning(
-    key: str,
-    item: Tool | EnvironmentObject,
-    part: Decomposition,
-    largest_m: float,
+    key: str, item: Tool | EnvironmentObject, part: Decomposition, largest_m: float
 ) -> str:
     extent_m = max(part.mesh.report.extent)
     if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
@@ -195,7 +192,7 @@ def _make_reach_warnings(haptic: HapticDiagram) -> list[str]:
             for item, part in zip(
                 haptic.scene.environment, haptic.environment, strict=True
             )
-        ),
+        )
     )
     gap_m -= radius_m
     if gap_m <= calc_first_touch(haptic.scene.contact):

@@ -178,12 +178,7 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParame
     end = round(float(times[-1]) + _APPROACH_S, _DECIMALS_S)
     start = _round_position(above)
     return HandPathParameters(
-        periodic=True,
-        waypoints=[
-            Waypoint(0.0, start),
-            *around,
-            Waypoint(end, start),
-        ],
+        periodic=True, waypoints=[Waypoint(0.0, start), *around, Waypoint(end, start)]
     )
 
 

@@ -89,10 +89,7 @@ _ROTATION = _Kind(
 
 
 def check_coupling(
-    coupling: SpringAndDamper,
-    handle: HeldHandle,
-    period_s: float,
-    delay_s: float = 0.0,
+    coupling: SpringAndDamper, handle: HeldHandle, period_s: float, delay_s: float = 0.0
 ) -> list[str]:
     """Returns the sentences of `find_broken_bounds`, with the same arguments."""
     found = find_broken_bounds(coupling, handle, period_s, delay_s)
@@ -100,10 +97,7 @@ def check_coupling(
 
 
 def find_broken_bounds(
-    coupling: SpringAndDamper,
-    handle: HeldHandle,
-    period_s: float,
-    delay_s: float = 0.0,
+    coupling: SpringAndDamper, handle: HeldHandle, period_s: float, delay_s: float = 0.0
 ) -> list[BrokenBound]:
     """Checks a coupling against the bounds of `drake_haptics.bounds.sampled_spring`.
 

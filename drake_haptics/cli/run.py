@@ -75,13 +75,9 @@ _EXPLAINED_S = 2.0
     " is not given.",
 )
 @file_option(
-    "--record",
-    help="Write the view as one HTML file that plays in any browser.",
+    "--record", help="Write the view as one HTML file that plays in any browser."
 )
-@file_option(
-    "--log",
-    help="Record every tick in a file, for the command `log`.",
-)
+@file_option("--log", help="Record every tick in a file, for the command `log`.")
 @file_option(
     "--write-scene",
     help="At the end write the scene, with what --set and the page have changed, as"

@@ -56,10 +56,7 @@ from drake_haptics.simulation.run import RunError
     help="The page to write; its picture goes beside it.  [default:"
     " SCENE-stability.html]",
 )
-@file_option(
-    "--store",
-    help="Keep the map's results here, and continue from them.",
-)
+@file_option("--store", help="Keep the map's results here, and continue from them.")
 @set_option
 @json_option()
 def stability(

@@ -228,8 +228,7 @@ def make_summary(figures: dict[str, Any]) -> Table:
     table.add_row("contact query", _describe_times(figures["contact_query_us"]))
     if late := figures["lateness_us"]:
         table.add_row(
-            "late",
-            f"{_describe_times(late)}; {count(late['skipped'], 'tick')} skipped",
+            "late", f"{_describe_times(late)}; {count(late['skipped'], 'tick')} skipped"
         )
     table.add_row(
         "contacts",
@@ -365,8 +364,7 @@ def make_driver_summary(figures: Mapping[str, Any]) -> Table:
         "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
     )
     table.add_row(
-        "late",
-        f"{_describe_times(late)}, {count(late['skipped'], 'tick')} skipped",
+        "late", f"{_describe_times(late)}, {count(late['skipped'], 'tick')} skipped"
     )
     table.add_row("packets", _count_each(figures["packets"]))
     table.add_row(

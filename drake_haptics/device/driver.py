@@ -158,9 +158,7 @@ class DeviceDriver:
         self._stops = True
 
     def run(
-        self,
-        duration_s: float | None = None,
-        on_tick: Callable[[], None] | None = None,
+        self, duration_s: float | None = None, on_tick: Callable[[], None] | None = None
     ) -> None:
         """Serves in real time, and always ends at zero force.
 

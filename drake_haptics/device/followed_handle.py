@@ -241,10 +241,7 @@ class PoseFilter:
         r, change = self._turn.calc(since_s)
         q_BH = multiply(to_quaternion(r), self._q_B)
         p_BH = [o + x for o, x in zip(self._p_B, p, strict=True)]
-        return (
-            np.array(q_BH + p_BH),
-            np.array(calc_angular_velocity(r, change) + v),
-        )
+        return (np.array(q_BH + p_BH), np.array(calc_angular_velocity(r, change) + v))
 
     def _since(self, time_s: float) -> float:
         """Returns the time since the last goal, s; 0 before the first one."""

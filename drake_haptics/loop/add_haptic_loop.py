@@ -193,11 +193,7 @@ def AddHapticLoop(
                 builder.AddNamedSystem(
                     "haptic_tool",
                     HapticTool(
-                        tool_dynamics,
-                        period_s,
-                        names,
-                        X_WT,
-                        enable_chain=is_chained,
+                        tool_dynamics, period_s, names, X_WT, enable_chain=is_chained
                     ),
                 ),
                 load_shedding,
@@ -313,16 +309,12 @@ def _add_handle_model(
     model = builder.AddNamedSystem(
         "handle_model",
         HandleModel(
-            [name for name in sources if name != "coupling"],
-            enable_chain=bool(chain),
+            [name for name in sources if name != "coupling"], enable_chain=bool(chain)
         ),
     )
     connect_by_name(builder, model, chain)
     for output, input in [
-        (
-            base.device.GetOutputPort("X_WH"),
-            model.GetInputPort("X_WH"),
-        ),
+        (base.device.GetOutputPort("X_WH"), model.GetInputPort("X_WH")),
         (base.haptic_tool.GetOutputPort("X_WT"), model.GetInputPort("X_WT")),
         *((source, model.GetInputPort(name)) for name, source in sources.items()),
         (

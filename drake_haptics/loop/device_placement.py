@@ -180,9 +180,6 @@ def make_device_port(
     io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")
     device = HapticDevice(
-        io,
-        period_s=period_s,
-        max_force_N=max_force_N,
-        max_torque_Nm=max_torque_Nm,
+        io, period_s=period_s, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
     )
     return device, X_WB @ vector_to_pose(reading.X_BH)

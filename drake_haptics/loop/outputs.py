@@ -56,14 +56,8 @@ def add_picture(
         ),
     )
     for output, input in [
-        (
-            loop.device.GetOutputPort("X_WH"),
-            visualizer.GetInputPort("X_WH"),
-        ),
-        (
-            loop.haptic_tool.GetOutputPort("X_WT"),
-            visualizer.GetInputPort("X_WT"),
-        ),
+        (loop.device.GetOutputPort("X_WH"), visualizer.GetInputPort("X_WH")),
+        (loop.haptic_tool.GetOutputPort("X_WT"), visualizer.GetInputPort("X_WT")),
         (loop.contacts, visualizer.GetInputPort("contacts")),
         (loop.clusters, visualizer.GetInputPort("clusters")),
         (loop.contact_wrench, visualizer.GetInputPort("contact_wrench")),

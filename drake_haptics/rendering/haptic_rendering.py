@@ -178,9 +178,7 @@ class HapticRendering(Diagram):
 
 
 def _check_effects(
-    effects: Effects,
-    coupling: CouplingParameters | None,
-    device: HapticDevice | None,
+    effects: Effects, coupling: CouplingParameters | None, device: HapticDevice | None
 ) -> None:
     """Refuses effects that would do nothing or act wrongly."""
     if device is not None and coupling is None:

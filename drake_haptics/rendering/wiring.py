@@ -209,10 +209,7 @@ class RenderingWiring:
             self.outputs["F_O_W"] = self._on_objects["contact"]
 
     def _add_proxy(
-        self,
-        contact: ContactParameters,
-        materials: Sequence[Material],
-        period_s: float,
+        self, contact: ContactParameters, materials: Sequence[Material], period_s: float
     ) -> None:
         """Adds the proxy that contact stops, and the spring from the body to it."""
         step_s = self._tool.body.GetParentPlant().time_step()
@@ -288,10 +285,7 @@ class RenderingWiring:
         self._asked = coupling.GetOutputPort("F_Ho_W_commanded")
         self.outputs["F_Ho_W_commanded"] = self._asked
         if device is None:
-            for port in (
-                coupling.GetInputPort("X_WH"),
-                coupling.GetInputPort("V_WH"),
-            ):
+            for port in (coupling.GetInputPort("X_WH"), coupling.GetInputPort("V_WH")):
                 # Errors name this system.
                 named = self.builder.AddNamedSystem(
                     port.get_name(), _FiniteInput(port.size())

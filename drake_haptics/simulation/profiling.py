@@ -269,9 +269,7 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
     return parts
 
 
-def _find_chained(
-    haptic: HapticDiagram,
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _find_chained(haptic: HapticDiagram) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Returns the names of the systems whose work is one call of the core.
 
     Returns:

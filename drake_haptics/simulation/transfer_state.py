@@ -121,10 +121,7 @@ def _take_handle(haptic: HapticDiagram, root: Context, X_WH: RigidTransform) -> 
     context = arm.GetMyMutableContextFromRoot(root)
     try:
         q = solve_arm_positions(
-            arm,
-            arm.GetBodyByName(preset.handle_link),
-            X_WH,
-            arm.GetPositions(context),
+            arm, arm.GetBodyByName(preset.handle_link), X_WH, arm.GetPositions(context)
         )
     except UnreachableError:
         return False

@@ -152,10 +152,7 @@ def find_common_rows(a: TickLog, b: TickLog) -> tuple[TickRows, TickRows]:
 # Parts of a quantity with different units: name, unit, columns.
 _PARTS = {
     POSE: (("rotation", "rad", slice(0, 4)), ("position", "m", slice(4, 7))),
-    VELOCITY: (
-        ("angular", "rad/s", slice(0, 3)),
-        ("linear", "m/s", slice(3, 6)),
-    ),
+    VELOCITY: (("angular", "rad/s", slice(0, 3)), ("linear", "m/s", slice(3, 6))),
     WRENCH: (("torque", "N·m", slice(0, 3)), ("force", "N", slice(3, 6))),
 }
 

@@ -60,8 +60,7 @@ class LogSummary:
 
 
 def summarize_log(
-    path: str | os.PathLike[str],
-    progress: Callable[[str, float], None] | None = None,
+    path: str | os.PathLike[str], progress: Callable[[str, float], None] | None = None
 ) -> LogSummary:
     """Reads a log block by block and summarizes it.
 

@@ -215,8 +215,7 @@ class TickLogReader:
 
 
 def read_tick_log(
-    path: str | os.PathLike[str],
-    progress: Callable[[str, float], None] | None = None,
+    path: str | os.PathLike[str], progress: Callable[[str, float], None] | None = None
 ) -> TickLog:
     """Reads a whole log.
 

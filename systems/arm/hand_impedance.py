@@ -194,11 +194,7 @@ def make_held_arm(
 
     X_WH, J_WH = kinematics(np.zeros(2 * _NUM_JOINTS))
     arm = ArmDynamics(
-        J_WH,
-        pose_to_vector(X_WH),
-        path.core,
-        pose_to_vector(X_PH),
-        gains or _LETS_GO,
+        J_WH, pose_to_vector(X_WH), path.core, pose_to_vector(X_PH), gains or _LETS_GO
     )
     X_WH, J_WH = kinematics(_PROBE)
     handle_state = arm.calc_handle_state(_PROBE)

@@ -40,10 +40,7 @@ class UnreachableError(ValueError):
 
 
 def solve_arm_positions(
-    plant: MultibodyPlant,
-    handle: RigidBody,
-    X_WH: RigidTransform,
-    q_guess: np.ndarray,
+    plant: MultibodyPlant, handle: RigidBody, X_WH: RigidTransform, q_guess: np.ndarray
 ) -> np.ndarray:
     """Returns joint positions that put the handle at a pose, by Newton's method.
 
@@ -65,10 +62,7 @@ def solve_arm_positions(
         X_WN = plant.EvalBodyPoseInWorld(context, handle)
         turn = (X_WH.rotation() @ X_WN.rotation().inverse()).ToAngleAxis()
         error = np.concatenate(
-            [
-                turn.angle() * turn.axis(),
-                X_WH.translation() - X_WN.translation(),
-            ]
+            [turn.angle() * turn.axis(), X_WH.translation() - X_WN.translation()]
         )
         J = plant.CalcJacobianSpatialVelocity(
             context,

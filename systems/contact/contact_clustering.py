@@ -261,9 +261,7 @@ def _cluster(
 
 
 def _cluster(
-    contacts: ContactSet | AutoDiffContactSet,
-    tolerance_m: float,
-    delta_m: float | None,
+    contacts: ContactSet | AutoDiffContactSet, tolerance_m: float, delta_m: float | None
 ) -> ClusterSet | AutoDiffClusterSet:
     if delta_m is None:
         return share_stiffness(contacts, tolerance_m)

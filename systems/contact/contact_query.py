@@ -205,8 +205,7 @@ class ContactQuery(DifferentiableSystem):
             self._eval_tracker = self.DeclareCacheEntry(
                 description="tracker",
                 value_producer=ValueProducer(
-                    allocate=lambda: Value[object](_NOTHING),
-                    calc=self._prepare_tracker,
+                    allocate=lambda: Value[object](_NOTHING), calc=self._prepare_tracker
                 ),
                 prerequisites_of_calc=from_parameters,
             ).Eval
@@ -343,11 +342,7 @@ class ContactQuery(DifferentiableSystem):
         if all(port.HasValue(context) for port in self._law):
             rule, gains, *shading = (port.Eval(context) for port in self._law)
             tracker.set_law(
-                rule.tolerance_m,
-                rule.delta_m,
-                self._at_rest,
-                gains.materials,
-                *shading,
+                rule.tolerance_m, rule.delta_m, self._at_rest, gains.materials, *shading
             )
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:

@@ -178,10 +178,7 @@ class PenaltyForce(DifferentiableSystem):
                 "F_O_W", 6 * len(self._moving), self._calc_F_O_W, from_inputs
             )
         self._contact_wrench = self.DeclareAbstractOutputPort(
-            "contact_wrench",
-            Value[object],
-            self._calc_contact_wrench,
-            from_inputs,
+            "contact_wrench", Value[object], self._calc_contact_wrench, from_inputs
         )
         self.DeclareAbstractOutputPort(
             "gains", Value[object], self._show_gains, {self.pa_ticket()}

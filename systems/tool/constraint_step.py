@@ -169,10 +169,7 @@ class _ConstraintStep(DifferentiableSystem):
         )
         if self._num_anchors > 0:
             self.DeclareAbstractOutputPort(
-                "friction_force",
-                Value[object],
-                self._calc_friction_force,
-                from_result,
+                "friction_force", Value[object], self._calc_friction_force, from_result
             )
             self.DeclareVectorOutputPort(
                 "friction_model", 78, self._calc_friction_model, from_result

@@ -49,12 +49,7 @@ class HandleModel(LeafSystem):
 
     DoGetWitnessFunctions = get_no_witness_functions
 
-    def __init__(
-        self,
-        wrench_names: Sequence[str],
-        *,
-        enable_chain: bool = False,
-    ):
+    def __init__(self, wrench_names: Sequence[str], *, enable_chain: bool = False):
         """Constructs the system.
 
         Args:

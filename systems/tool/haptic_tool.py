@@ -81,8 +81,7 @@ class HapticTool(Diagram):
         self._period_s = period_s
         builder = DiagramBuilder()
         step = builder.AddNamedSystem(
-            "step",
-            _ImplicitStep(dynamics, period_s, wrench_names, X_WT, enable_chain),
+            "step", _ImplicitStep(dynamics, period_s, wrench_names, X_WT, enable_chain)
         )
         for port in map(step.get_input_port, range(step.num_input_ports())):
             builder.ExportInput(port, port.get_name())
@@ -186,8 +185,7 @@ class _ImplicitStep(DifferentiableSystem):
         wrench_model = AutoDiffVector(
             sum((model.value for model in models), np.zeros(78)),
             sum(
-                (model.gradient for model in models),
-                np.zeros((78, at.num_derivatives)),
+                (model.gradient for model in models), np.zeros((78, at.num_derivatives))
             ),
         )
         return self._dynamics.step(at.state, wrench_model, self._period_s)

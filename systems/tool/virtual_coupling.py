@@ -85,10 +85,7 @@ class VirtualCoupling(Diagram):
             ),
         )
         import_parts(
-            builder,
-            spring.get_input_port(),
-            _MOTIONS,
-            self._gains.get_output_port(),
+            builder, spring.get_input_port(), _MOTIONS, self._gains.get_output_port()
         )
         export_parts(
             builder,

@@ -18,10 +18,7 @@ NAMES = sorted(path.name for path in EXAMPLES.glob("*.py"))
 def run(tmp_path_factory):
     """Runs an example once and returns what it prints."""
     store = tmp_path_factory.mktemp("study") / "study.jsonl"
-    arguments = {
-        "cup_and_spoon.py": ["0.5"],
-        "peg_stability_study.py": [str(store)],
-    }
+    arguments = {"cup_and_spoon.py": ["0.5"], "peg_stability_study.py": [str(store)]}
     printed = {}
 
     def run_once(name):
@@ -50,8 +47,7 @@ def test_example_runs(name, run):
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["arm_holding_a_tool.py", "cup_and_spoon.py", "peg_stability_study.py"],
+    "name", ["arm_holding_a_tool.py", "cup_and_spoon.py", "peg_stability_study.py"]
 )
 @pytest.mark.parametrize(("option", "code"), [("--help", 0), ("--nope", 2)])
 def test_an_example_with_arguments_tells_of_them_and_does_nothing_else(

@@ -250,9 +250,7 @@ def test_a_finger_moves_it(hand):
 
 def test_fingers_that_spread_pull_it_near(hand):
     touch(
-        hand,
-        [(400, 250), (380, 250), (360, 250)],
-        [(440, 250), (460, 250), (480, 250)],
+        hand, [(400, 250), (380, 250), (360, 250)], [(440, 250), (460, 250), (480, 250)]
     )
     X = hand.rest()
     near = -hand.meshcat.GetTrackedCameraPose().rotation().matrix()[:, 2]
@@ -263,9 +261,7 @@ def test_fingers_that_spread_pull_it_near(hand):
 
 def test_two_fingers_turn_it(hand):
     touch(
-        hand,
-        [(400, 250), (400, 240), (400, 220)],
-        [(440, 250), (440, 240), (440, 220)],
+        hand, [(400, 250), (400, 240), (400, 220)], [(440, 250), (440, 240), (440, 220)]
     )
     X = hand.rest()
     turn = X.rotation().ToAngleAxis()

@@ -16,13 +16,7 @@ from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 PREMIUM = "phantom_premium_1_5_6dof"
 HANDLE = HeldHandle(0.1, 0.5, 5e-5, 1e-4)
-CASES = [
-    (1000.0, 0.0),
-    (1000.0, 1e-3),
-    (1000.0, 4.4e-3),
-    (250.0, 0.0),
-    (4000.0, 2e-3),
-]
+CASES = [(1000.0, 0.0), (1000.0, 1e-3), (1000.0, 4.4e-3), (250.0, 0.0), (4000.0, 2e-3)]
 
 
 def calc_radius(m, b, k, K, B, T, delay_s):
@@ -107,10 +101,7 @@ def test_the_margins_are_those_of_the_loop(rate_hz, delay_s):
     # for the law of Gil et al., near to it.
     assert min(free.stiffness, free.gain) == pytest.approx(2.0, rel=0.1)
     m, b = HANDLE.mass_kg, HANDLE.damping_Ns_per_m
-    for f, g, late in [
-        (free.stiffness, 1, delay_s),
-        (free.gain, free.gain, delay_s),
-    ]:
+    for f, g, late in [(free.stiffness, 1, delay_s), (free.gain, free.gain, delay_s)]:
         assert calc_radius(m, b, 0, f * K, g * B, T, late) == pytest.approx(1, abs=1e-6)
     assert calc_radius(m, b, 0, K, B, T, 0.95 * free.largest_delay_s) < 1
     assert calc_radius(m, b, 0, K, B, T, 1.05 * free.largest_delay_s) > 1

@@ -96,9 +96,7 @@ def test_where_another_gain_is_too_large_says_what_grows(held):
 @pytest.mark.parametrize("kind", ["translation", "rotation"])
 def test_a_coupling_without_that_stiffness_has_no_limit(held, kind):
     coupling = replace(
-        held.scene.coupling,
-        stiffness_N_per_m=0.0,
-        rotational_stiffness_Nm_per_rad=0.0,
+        held.scene.coupling, stiffness_N_per_m=0.0, rotational_stiffness_Nm_per_rad=0.0
     )
     loose = replace(held, scene=replace(held.scene, coupling=coupling))
     with pytest.raises(ValueError, match=r"coupling\.\w+ must be above 0, is 0"):

@@ -234,9 +234,7 @@ def test_the_picture_has_region_lines_and_gains():
     curve = axes.collections[-1].get_paths()[0].vertices
     inside = curve[:, 1] > 1e-9
     np.testing.assert_allclose(
-        curve[inside, 0],
-        (b - curve[inside, 1]) * 2 / T,
-        atol=20.0,
+        curve[inside, 0], (b - curve[inside, 1]) * 2 / T, atol=20.0
     )
     assert passivity.get_xdata().max() == pytest.approx(2 * b / T)
 

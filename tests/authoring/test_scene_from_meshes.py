@@ -108,7 +108,6 @@ def test_a_tool_that_is_held_at_its_end_keeps_its_origin(tmp_path):
     stick = SHAPES["stick"].copy()
     stick.apply_translation([0.0, 0.0, 0.065])
     scene = make_scene_for_meshes(
-        write(tmp_path, "stick.stl", stick),
-        write(tmp_path, "ball.ply", SHAPES["ball"]),
+        write(tmp_path, "stick.stl", stick), write(tmp_path, "ball.ply", SHAPES["ball"])
     )
     assert not scene.tool.center

@@ -18,10 +18,7 @@ pytestmark = pytest.mark.skipif(
 # Of the core and of the whole, of cup_spoon in contact, counted when this was written:
 # GCC 12, CPython 3.11. `python tests/benchmarks/tick_instructions.py` counts again; a
 # change that needs more on purpose says so here.
-COUNTS = {
-    "backend": (62_500, 288_400),
-    "plant": (57_600, 347_500),
-}
+COUNTS = {"backend": (62_500, 288_400), "plant": (57_600, 347_500)}
 
 
 def test_a_tick_of_the_cup_takes_no_more_instructions_than_it_did():

@@ -23,8 +23,7 @@ def test_a_coupling_beyond_its_bounds_is_warned_of_by_key_and_bound(tmp_path):
         BuildHapticDiagram(scene)
     scene.coupling.stiffness_N_per_m = 1e5
     with pytest.warns(
-        SceneWarning,
-        match=r"coupling\.stiffness_N_per_m is 100000, but stable only",
+        SceneWarning, match=r"coupling\.stiffness_N_per_m is 100000, but stable only"
     ):
         BuildHapticDiagram(scene)
 

@@ -54,10 +54,7 @@ def test_a_weight_hangs_below_a_handle_by_its_weight_over_the_stiffness():
     weight_N = case.provoked["tool.mass_kg"] * np.linalg.norm(
         GravityParameters().acceleration_m_per_s2
     )
-    for stiffness, cell in [
-        (case.provoked[COUPLING], 3),
-        (case.cure[COUPLING], 4),
-    ]:
+    for stiffness, cell in [(case.provoked[COUPLING], 3), (case.cure[COUPLING], 4)]:
         hangs_mm = 1e3 * weight_N / stiffness
         assert float(read_row(case)[cell]) == pytest.approx(hangs_mm, rel=5e-3)
     assert make_row(case) == read_row(case)

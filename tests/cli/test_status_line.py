@@ -45,11 +45,7 @@ def test_a_terminal_sees_time_contacts_and_force(haptic):
 
 
 def follow_device(
-    script,
-    duration_s=0.05,
-    width=200,
-    wrap=lambda device: device,
-    tool_mass_kg=None,
+    script, duration_s=0.05, width=200, wrap=lambda device: device, tool_mass_kg=None
 ):
     """Returns what a terminal sees of a run on a device, 0.1 s of clock per tick."""
     scene = load_scene(find_scene("sphere_pen"))

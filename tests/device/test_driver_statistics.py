@@ -68,14 +68,7 @@ def test_faults_and_recoveries_are_counted_by_kind_and_listed_with_times(statist
         tick(statistics, [0] * 6, gate, fault, time_s)
 
     for i, fault in enumerate(
-        [
-            Fault.STALE,
-            Fault.STALE,
-            Fault.NONE,
-            Fault.OVERSPEED,
-            Fault.NONE,
-            Fault.STALE,
-        ]
+        [Fault.STALE, Fault.STALE, Fault.NONE, Fault.OVERSPEED, Fault.NONE, Fault.STALE]
     ):
         show(fault, float(i))
     figures = statistics.to_dict()

@@ -52,10 +52,7 @@ from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 SKIN = 3e-4
 ABOVE, PRESS = TOOL_HALF_HEIGHT + 5e-3, TOOL_HALF_HEIGHT - 5e-3
-WITHOUT_SPRINGS = (
-    "effects.shading=",
-    "effects.braking=",
-)
+WITHOUT_SPRINGS = ("effects.shading=", "effects.braking=")
 
 
 def by_constraint(name):

@@ -280,11 +280,7 @@ def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain() -> Non
     expected = loop.haptic_tool.EvalUniquePeriodicDiscreteUpdate(own).value()
     names = ["coupling", "contact", "other"]
     tool = HapticTool(
-        loop.haptic_tool.dynamics,
-        _TICK,
-        names,
-        RigidTransform(),
-        enable_chain=True,
+        loop.haptic_tool.dynamics, _TICK, names, RigidTransform(), enable_chain=True
     )
     context = tool.CreateDefaultContext()
     tool.get_input_port(0).FixValue(context, np.full(78, 1e3))

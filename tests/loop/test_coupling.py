@@ -19,10 +19,7 @@ COUPLING = CouplingParameters(stiffness_N_per_m=500.0)
 
 def make_device(max_force_N=3.0, max_torque_Nm=0.1):
     return HapticDevice(
-        Slider(),
-        period_s=PERIOD,
-        max_force_N=max_force_N,
-        max_torque_Nm=max_torque_Nm,
+        Slider(), period_s=PERIOD, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
     )
 
 

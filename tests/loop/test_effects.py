@@ -200,9 +200,7 @@ def test_each_object_rubs_with_its_own_friction(tmp_path, own):
 def test_the_reserve_is_what_coupling_softest_contact_and_tool_can_give_back(tmp_path):
     scene = over_a_plate(tmp_path, [START])
     second = replace(
-        scene.environment[0],
-        name="second",
-        material=Material(stiffness_N_per_m=250.0),
+        scene.environment[0], name="second", material=Material(stiffness_N_per_m=250.0)
     )
     scene.environment = [scene.environment[0], second]
     scene.contact = ContactParameters(stiffness_N_per_m=5e4)

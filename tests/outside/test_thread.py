@@ -43,16 +43,10 @@ class Law:
 
 LAWS = {
     "penalty": Law(
-        CONTACTS["penalty"],
-        lambda contact: contact.tolerance_m,
-        1.1,
-        3.2e-5,
+        CONTACTS["penalty"], lambda contact: contact.tolerance_m, 1.1, 3.2e-5
     ),
     "constraint": Law(
-        CONTACTS["constraint"],
-        lambda contact: contact.skin_m,
-        1.25,
-        1e-9,
+        CONTACTS["constraint"], lambda contact: contact.skin_m, 1.25, 1e-9
     ),
 }
 laws = pytest.mark.parametrize("law", LAWS)

@@ -101,14 +101,8 @@ def test_a_name_of_several_bodies_is_refused():
     ("scoped", "expected"),
     [
         (["left::hand", "right::hand"], ["left_hand", "right_hand"]),
-        (
-            ["m::box", "n::box", "k::m_box"],
-            ["m::box", "n_box", "m_box"],
-        ),
-        (
-            ["a_b::c", "a::b_c", "d::c", "d::b_c"],
-            ["a_b::c", "a::b_c", "d_c", "d_b_c"],
-        ),
+        (["m::box", "n::box", "k::m_box"], ["m::box", "n_box", "m_box"]),
+        (["a_b::c", "a::b_c", "d::c", "d::b_c"], ["a_b::c", "a::b_c", "d_c", "d_b_c"]),
     ],
     ids=["by these alone", "clash with a body", "clash with each other"],
 )

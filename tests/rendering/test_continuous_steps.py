@@ -28,10 +28,7 @@ SCHEMES = ["runge_kutta3"] + [s for s in ("cenic",) if s in GetIntegrationScheme
 
 
 def throw_at_a_plate(
-    scheme: str,
-    period_s: float | None,
-    height_m: float = 0.06,
-    accuracy: float = 1e-3,
+    scheme: str, period_s: float | None, height_m: float = 0.06, accuracy: float = 1e-3
 ) -> tuple[float, float]:
     """Returns height (m) and speed (m/s) at the end of a cube thrown at a plate.
 

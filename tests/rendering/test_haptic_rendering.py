@@ -195,8 +195,7 @@ def test_one_tool_may_meet_bodies_in_two_ways():
     )
     gap = CONTACT.tolerance_m - 1e-3
     scene.start(
-        tool=RigidTransform([0, 0, REST]),
-        cart=RigidTransform([2 * HALF + gap, 0, 0.5]),
+        tool=RigidTransform([0, 0, REST]), cart=RigidTransform([2 * HALF + gap, 0, 0.5])
     )
     near = RigidTransform([2 * HALF + gap, 0, REST])
     cart = scene.plant.GetBodyByName("cart")

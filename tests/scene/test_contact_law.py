@@ -26,10 +26,7 @@ from drake_haptics.scene.settings import change_scene
 from drake_haptics.scene.validation import calc_skin_speed, check_rendering
 
 CONSTRAINT = ContactParameters(law="constraint", skin_m=2e-4)
-OF_PENALTY = {
-    "shading": ShadingParameters(),
-    "braking": BrakingParameters(),
-}
+OF_PENALTY = {"shading": ShadingParameters(), "braking": BrakingParameters()}
 
 
 def test_a_scene_is_by_the_penalty_law_unless_it_says_otherwise():

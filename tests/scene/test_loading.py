@@ -163,16 +163,8 @@ def test_a_pose_is_drakes():
             "decomposition: hul\n  mass_kg",
             r"tool\.decomposition is 'hul'; did you mean 'hull'",
         ),
-        (
-            "mass_kg",
-            "chord_error_m: 1e-4\n  mass_kg",
-            r"tool\.chord_error_m is",
-        ),
-        (
-            "peg.obj",
-            "peg.ob",
-            r"tool\.mesh: .*no such file; did .*'peg\.obj'",
-        ),
+        ("mass_kg", "chord_error_m: 1e-4\n  mass_kg", r"tool\.chord_error_m is"),
+        ("peg.obj", "peg.ob", r"tool\.mesh: .*no such file; did .*'peg\.obj'"),
         ("peg.obj", "no/peg.obj", r"tool\.mesh: .*: there is no folder .*no"),
         ("mesh: peg.obj", "", r"tool\.mesh is missing"),
         (
@@ -215,11 +207,7 @@ def test_a_pose_is_drakes():
             "contact: {max_walk_steps: 1000000000000}\nhand:",
             r"max_walk_steps must be at least 1 and at most 2,147,483,647, is 1000",
         ),
-        (
-            "hand:",
-            "contact: {query_rate_hz: 0}\nhand:",
-            r"at least 20, is 0",
-        ),
+        ("hand:", "contact: {query_rate_hz: 0}\nhand:", r"at least 20, is 0"),
         (
             "hand:",
             "contact: {query_rate_hz: 300}\nhand:",
@@ -249,11 +237,7 @@ def test_a_pose_is_drakes():
             "contact: {tolerance_m: 1e-3}\ncontact:\n  depth: global\nhand:",
             r"contact: given in line \d+ and again in line \d+",
         ),
-        (
-            "mass_kg",
-            "scale: 2\n  scale: 1\n  mass_kg",
-            r"tool\.scale: given in line",
-        ),
+        ("mass_kg", "scale: 2\n  scale: 1\n  mass_kg", r"tool\.scale: given in line"),
         ("scale: 1e-3", "scale: 1e-3\n  scale: 1", r"environment\[0\]\.scale: given"),
     ],
 )

@@ -158,10 +158,7 @@ def test_the_tool_has_the_work_of_all_less_what_the_implicit_step_takes(seen):
     def energies(V):
         return kinetic_energies(
             SimpleNamespace(
-                X_WT=seen.X_WT[:-1],
-                V_WT=V,
-                p_TTcm=seen.p_TTcm,
-                I_TTcm_T=seen.I_TTcm_T,
+                X_WT=seen.X_WT[:-1], V_WT=V, p_TTcm=seen.p_TTcm, I_TTcm_T=seen.I_TTcm_T
             )
         )
 

@@ -50,10 +50,6 @@ def test_the_stiffest_rotation_is_that_of_the_law():
 @pytest.mark.parametrize("grip", HAND_GRIPS)
 def test_the_default_coupling_is_stable_in_every_grip(grip):
     assert (
-        growth(
-            grip,
-            DEFAULT.stiffness_N_per_m,
-            DEFAULT.rotational_stiffness_Nm_per_rad,
-        )
+        growth(grip, DEFAULT.stiffness_N_per_m, DEFAULT.rotational_stiffness_Nm_per_rad)
         < 0.1
     )

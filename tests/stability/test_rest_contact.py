@@ -37,10 +37,7 @@ def run_and_record(scene):
     ports = {
         "pose": (loop.haptic_tool, loop.haptic_tool.GetOutputPort("X_WT")),
         "velocity": (loop.haptic_tool, loop.haptic_tool.GetOutputPort("V_WT")),
-        "contact": (
-            loop.penalty_force,
-            loop.penalty_force.GetOutputPort("F_To_W"),
-        ),
+        "contact": (loop.penalty_force, loop.penalty_force.GetOutputPort("F_To_W")),
         "handle": (loop.device, loop.device.GetOutputPort("X_WH")),
         "shown": (loop.device, loop.device.GetOutputPort("F_Ho_W_rendered")),
     }

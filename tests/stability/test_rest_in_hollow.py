@@ -13,11 +13,7 @@ PRESS_M = 0.006  # the handle below the surface
 COMING, HELD, WATCHED = 800, 1800, 400  # ticks of 1 ms
 COUPLING = _core.CouplingGains(800.0, 2.0, 1.0, 5e-3)
 AT_ORIGIN = np.array([1.0, 0, 0, 0, 0, 0, 0])
-GAINS = {
-    "default": (2e4, 2e-3),
-    "sinking": (5e3, 5e-4),
-    "soft": (2e3, 1e-3),
-}
+GAINS = {"default": (2e4, 2e-3), "sinking": (5e3, 5e-4), "soft": (2e3, 1e-3)}
 
 
 def press(x, stiffness, tolerance):

@@ -35,14 +35,8 @@ def add_device_on_fixed_tool(
     pose = builder.AddSystem(ConstantVectorSource(pose_to_vector(X_WT)))
     rest = builder.AddSystem(ConstantVectorSource(np.zeros(6)))
     for output, input in [
-        (
-            device.GetOutputPort("X_WH"),
-            coupling.GetInputPort("X_WH"),
-        ),
-        (
-            device.GetOutputPort("V_WH"),
-            coupling.GetInputPort("V_WH"),
-        ),
+        (device.GetOutputPort("X_WH"), coupling.GetInputPort("X_WH")),
+        (device.GetOutputPort("V_WH"), coupling.GetInputPort("V_WH")),
         (pose.get_output_port(), coupling.GetInputPort("X_WT")),
         (rest.get_output_port(), coupling.GetInputPort("V_WT")),
     ]:
@@ -57,14 +51,8 @@ def add_device_on_fixed_tool(
                 device.GetOutputPort("F_Ho_W_rendered"),
                 control.GetInputPort("F_Ho_W_rendered"),
             ),
-            (
-                device.GetOutputPort("X_WH"),
-                control.GetInputPort("X_WH"),
-            ),
-            (
-                device.GetOutputPort("V_WH"),
-                control.GetInputPort("V_WH"),
-            ),
+            (device.GetOutputPort("X_WH"), control.GetInputPort("X_WH")),
+            (device.GetOutputPort("V_WH"), control.GetInputPort("V_WH")),
         ]:
             builder.Connect(output, input)
         F_shown = control.GetOutputPort("F_Ho_W_commanded")

@@ -52,9 +52,7 @@ def make_chain(
         count = len(objects)
         systems["clustering"] = ContactClustering("shared", tolerance_m, None)
         systems["penalty"] = PenaltyForce(
-            objects,
-            np.full(count, STIFFNESS_N_PER_M),
-            np.full(count, DAMPING_NS_PER_M),
+            objects, np.full(count, STIFFNESS_N_PER_M), np.full(count, DAMPING_NS_PER_M)
         )
     if friction:
         systems["friction"] = friction

@@ -168,11 +168,7 @@ class PenaltyLoop:
     """
 
     def __init__(
-        self,
-        tool: PressTool,
-        solid: _core.ConvexPieces,
-        gains: Gains,
-        q_WT: np.ndarray,
+        self, tool: PressTool, solid: _core.ConvexPieces, gains: Gains, q_WT: np.ndarray
     ) -> None:
         self.state = np.concatenate([q_WT, np.zeros(6)])
         self.q_WH = np.array(q_WT, dtype=float)

@@ -6,9 +6,7 @@ import numpy as np
 
 
 def crossing_edges(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    edges: np.ndarray | None = None,
+    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray | None = None
 ) -> list[tuple[int, int]]:
     """Pairs (index of an edge, triangle) that cross and share no vertex.
 

@@ -124,10 +124,7 @@ def run_chain(
     )
     R_SW = X_WS[:3, :3].T
     return Wrenches(
-        turned(R_SW, found.F_To_W),
-        turned(R_SW, found.F_objects_W),
-        clusters,
-        found,
+        turned(R_SW, found.F_To_W), turned(R_SW, found.F_objects_W), clusters, found
     )
 
 

@@ -126,10 +126,7 @@ def _add_claw(builder: SurfaceBuilder, root: list[int]) -> None:
     """Adds the tines; each starts at one half of `root` and the chord across it."""
     front = _OPENING // 2
     back = front + _SECTORS // 2
-    halves = {
-        +1: root[front : back + 1],
-        -1: [*root[back:], *root[: front + 1]],
-    }
+    halves = {+1: root[front : back + 1], -1: [*root[back:], *root[: front + 1]]}
     for side, near in halves.items():
         for k in range(1, _TINE_SECTIONS + 1):
             far = builder.add_ring(_tine_section(side, k / _TINE_SECTIONS))

@@ -216,11 +216,7 @@ class SmoothPath:
 
 
 def rounded_path(
-    corners: np.ndarray,
-    bend_radius: float,
-    *,
-    bend_steps: int,
-    step: float = np.inf,
+    corners: np.ndarray, bend_radius: float, *, bend_steps: int, step: float = np.inf
 ) -> SmoothPath:
     """Returns the path along straight lines with rounded corners.
 

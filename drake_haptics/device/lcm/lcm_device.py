@@ -282,9 +282,7 @@ class LcmDevice(DeviceBackend):
         """Returns the counts of messages, and of commands that the device refused."""
         refused = 0 if self._status is None else to_uint32(self._status.rejected)
         return LinkStatus(
-            received=self._received,
-            lost=self._lost,
-            rejected=self._rejected + refused,
+            received=self._received, lost=self._lost, rejected=self._rejected + refused
         )
 
     def _send(self, F_Ho_B: np.ndarray, enable: bool) -> None:

@@ -173,9 +173,7 @@ def make_native_part(haptic: HapticDiagram) -> NativePart:
     )
 
 
-def time_native(
-    parts: Sequence[tuple[NativePart, RecordedMotion]],
-) -> list[TickTimes]:
+def time_native(parts: Sequence[tuple[NativePart, RecordedMotion]]) -> list[TickTimes]:
     """Times query, clusters and wrench of recorded motions, without Python, in turns.
 
     The time of a tick is the mean of the middle half of several passes, without

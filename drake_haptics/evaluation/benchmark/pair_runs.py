@@ -93,10 +93,7 @@ class PairFigures:
 
 
 def run_pair(
-    pair: PairShape,
-    libraries: Sequence[PairLibrary],
-    presses: int,
-    repeats: int,
+    pair: PairShape, libraries: Sequence[PairLibrary], presses: int, repeats: int
 ) -> list[PairFigures]:
     """Returns the figures of each library on one pair.
 

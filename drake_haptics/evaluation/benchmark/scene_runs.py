@@ -144,9 +144,7 @@ class SceneFigures:
 
 
 def run_scene(
-    problem: SceneProblem,
-    queries: dict[str, SceneQuery],
-    repeats: int,
+    problem: SceneProblem, queries: dict[str, SceneQuery], repeats: int
 ) -> list[SceneFigures]:
     """Returns the figures of each library in one scene.
 

@@ -161,9 +161,7 @@ def _measure_figure12(
 
 def _measure_analysis(effort: Effort, meshes: Path | None, show: Progress) -> Analysis:
     depths = measure_depth_costs(
-        effort.presses,
-        effort.instructions,
-        lambda what, share: show(what, 0.8 * share),
+        effort.presses, effort.instructions, lambda what, share: show(what, 0.8 * share)
     )
     show("pairs that penetrate", 0.8)
     pairs = measure_pair_scaling(effort.slide_ticks)

@@ -116,10 +116,7 @@ def check_folds(
 
 
 def check_components(
-    orientable: np.ndarray,
-    closed: np.ndarray,
-    solid: np.ndarray,
-    findings: Findings,
+    orientable: np.ndarray, closed: np.ndarray, solid: np.ndarray, findings: Findings
 ) -> None:
     """Reports many components, one-sided surfaces and solids without volume."""
     twisted = int((~orientable).sum())

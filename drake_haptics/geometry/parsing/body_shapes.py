@@ -124,10 +124,7 @@ def _share_of_all(progress: Progress, done: int, count: int) -> Progress:
 
 
 def _decompose_shape(
-    shape: Shape,
-    X_BG: np.ndarray,
-    chord_error_m: float,
-    progress: Progress | None,
+    shape: Shape, X_BG: np.ndarray, chord_error_m: float, progress: Progress | None
 ) -> _core.ConvexPieces:
     """Returns the pieces of one shape at X_BG (4, 4)."""
     if not isinstance(shape, Mesh):

@@ -87,12 +87,7 @@ def test_what_is_asked_of_a_loop_takes_one_thread(analyze, loop, threads):
 
 @pytest.mark.parametrize(
     "analyze",
-    [
-        calc_largest_stiffness,
-        calc_largest_delay,
-        calc_gain_margin,
-        calc_delay_bounds,
-    ],
+    [calc_largest_stiffness, calc_largest_delay, calc_gain_margin, calc_delay_bounds],
 )
 def test_what_is_asked_of_a_wall_takes_one_thread(analyze, threads):
     analyze(WALL)

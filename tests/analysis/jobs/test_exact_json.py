@@ -58,8 +58,7 @@ def test_a_scalar_of_numpy_is_the_number():
 
 
 @pytest.mark.parametrize(
-    "value",
-    [object(), {1, 2}, np.array([None]), b"raw", np.longdouble(1), Path("x")],
+    "value", [object(), {1, 2}, np.array([None]), b"raw", np.longdouble(1), Path("x")]
 )
 def test_what_has_no_exact_form_is_named_with_its_place(value):
     with pytest.raises(ValueError, match=r"\['a'\]\[1\] is of type"):

@@ -88,10 +88,7 @@ def test_a_task_that_raises_does_not_lose_the_others(client, journal):
         run_study(journal, ["raise", 1, "exit"], executor=executor)
     assert [r and r[0] for r in caught.value.results] == [None, 1, None]
     reasons = [failure.reason for failure in caught.value.failures]
-    assert reasons == [
-        "OddError: odd",
-        "SystemExit: Failure at linear_system.cc:89",
-    ]
+    assert reasons == ["OddError: odd", "SystemExit: Failure at linear_system.cc:89"]
 
 
 def test_a_task_that_kills_its_workers_fails_and_the_cluster_stays(client, journal):

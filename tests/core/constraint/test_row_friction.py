@@ -60,10 +60,7 @@ def test_what_slides_is_held_by_coulombs_law(tools, plates, plate, tool, coeffic
     tool = tools[tool]
     height = TOP_M + lowest(tool) - 3e-3
     loop = ConstraintLoop(
-        tool,
-        [plates[plate]],
-        at(0.02, 0.02, height + 4e-3),
-        coefficient=coefficient,
+        tool, [plates[plate]], at(0.02, 0.02, height + 4e-3), coefficient=coefficient
     )
     for k in range(300):
         loop.tick(at(0.02, 0.02, height + max(0, 300 - k) * 1e-5))

@@ -406,8 +406,7 @@ def test_it_answers_while_python_is_stalled_and_shows_nothing_stale():
 
 
 @pytest.mark.parametrize(
-    ("name", "value"),
-    [("ttl_s", 0.0), ("max_rate_hz", -1.0), ("hold_s", float("nan"))],
+    ("name", "value"), [("ttl_s", 0.0), ("max_rate_hz", -1.0), ("hold_s", float("nan"))]
 )
 def test_options_must_be_positive(name, value):
     with pytest.raises(ValueError, match=f"{name}.*above 0"):

@@ -14,14 +14,7 @@ from drake_haptics import _core
 
 # Where contacts tie, the differences around the kink settle in first order only.
 STEP = 1e-7
-COLUMNS = (
-    "distance",
-    "nhat_BA_W",
-    "p_WC",
-    "compression",
-    "damping_share",
-    "coupling",
-)
+COLUMNS = ("distance", "nhat_BA_W", "p_WC", "compression", "damping_share", "coupling")
 
 
 def clusters(state: State) -> _core.ClusterSet:

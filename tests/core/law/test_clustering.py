@@ -26,9 +26,7 @@ def connected(points: np.ndarray, reach: float) -> np.ndarray:
 
 @settings(max_examples=60)
 @given(
-    seed=st.integers(0, 10_000),
-    count=st.integers(1, 25),
-    delta=st.floats(1e-3, 2e-2),
+    seed=st.integers(0, 10_000), count=st.integers(1, 25), delta=st.floats(1e-3, 2e-2)
 )
 def test_clusters_lie_within_the_stated_band(
     seed: int, count: int, delta: float

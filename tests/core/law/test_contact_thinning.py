@@ -20,20 +20,13 @@ def scatter(seed, count):
 def columns(contacts):
     """Contacts as rows [distance, normal, point, object]."""
     return np.column_stack(
-        [
-            contacts.distance,
-            contacts.nhat_BA_W,
-            contacts.p_WC,
-            contacts.object_index,
-        ]
+        [contacts.distance, contacts.nhat_BA_W, contacts.p_WC, contacts.object_index]
     )
 
 
 @settings(max_examples=80)
 @given(
-    seed=st.integers(0, 10_000),
-    count=st.integers(1, 40),
-    cell=st.floats(1e-4, 5e-2),
+    seed=st.integers(0, 10_000), count=st.integers(1, 40), cell=st.floats(1e-4, 5e-2)
 )
 def test_a_deeper_one_nearby_stands_for_each_that_is_left_out(seed, count, cell):
     contacts = scatter(seed, count)

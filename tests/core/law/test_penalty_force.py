@@ -94,9 +94,7 @@ def test_a_box_on_a_plane_has_the_force_of_hookes_law() -> None:
                 np.zeros(1),
             )
             np.testing.assert_allclose(
-                wrench.F_To_W,
-                [0, 0, 0, 0, 0, K[0] * (T - (height - 0.01))],
-                atol=1e-9,
+                wrench.F_To_W, [0, 0, 0, 0, 0, K[0] * (T - (height - 0.01))], atol=1e-9
             )
 
 

@@ -166,10 +166,7 @@ def test_duplicates_change_nothing() -> None:
 
 def test_a_contact_that_begins_changes_nothing() -> None:
     """Beside others; alone; and where two meet that are parts of one constraint."""
-    for xy, depth in (
-        ([[0, 0], [0.01, 0]], [1e-3, 0.5e-3]),
-        ([[0, 0]], [-1.95e-3]),
-    ):
+    for xy, depth in (([[0, 0], [0.01, 0]], [1e-3, 0.5e-3]), ([[0, 0]], [-1.95e-3])):
         before = spikes(xy, depth)
         for at in ([0.02, 0.0], [1e-4, 0.0]):
             after = spikes([*xy, at], [*depth, -T + 1e-12])
@@ -282,8 +279,7 @@ def test_objects_do_not_mix() -> None:
     for o in range(3):
         own = together.object_index == o
         alone = _core.share_stiffness(
-            scatter([Site(s.R, s.tips, s.cubes) for s in sites if s.object == o], T),
-            T,
+            scatter([Site(s.R, s.tips, s.cubes) for s in sites if s.object == o], T), T
         )
         np.testing.assert_allclose(
             np.sort(together.compression[own]), np.sort(alone.compression), atol=1e-12

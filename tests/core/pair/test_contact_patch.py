@@ -157,8 +157,7 @@ def test_extents_of_a_cut_face_add_up_to_that_of_the_whole(
     # Turned about z, and partly beyond the edge of the tiles.
     angle = 0.4
     q = pose(
-        [0.037, 0.002, height + HALF[2]],
-        [np.cos(angle / 2), 0, 0, np.sin(angle / 2)],
+        [0.037, 0.002, height + HALF[2]], [np.cos(angle / 2), 0, 0, np.sin(angle / 2)]
     )
     whole = _core.SceneTracker(box(2 * HALF), [box([0.1, 0.1, 0.02], [0, 0, -0.01])], T)
     parts = _core.SceneTracker(box(2 * HALF), tiles, T)

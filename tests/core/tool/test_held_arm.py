@@ -35,12 +35,7 @@ def kinematics(plant, state):
     handle = plant.GetBodyByName("handle")
     world = plant.world_frame()
     J_WH = plant.CalcJacobianSpatialVelocity(
-        context,
-        JacobianWrtVariable.kV,
-        handle.body_frame(),
-        np.zeros(3),
-        world,
-        world,
+        context, JacobianWrtVariable.kV, handle.body_frame(), np.zeros(3), world, world
     )
     return plant.EvalBodyPoseInWorld(context, handle), J_WH
 

@@ -70,9 +70,7 @@ def test_both_wrenches_do_the_work_that_the_spring_gives(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_the_dampers_only_take_energy_and_rest_when_moving_together(
-    seed: int,
-) -> None:
+def test_the_dampers_only_take_energy_and_rest_when_moving_together(seed: int) -> None:
     q_WH, q_HT, q_WT, V_WH, V_WT = random_case(seed)
     damper = _core.CouplingGains(0.0, 2.0, 0.0, 0.004)
     out = coupling_wrench(q_WH, V_WH, q_HT, q_WT, V_WT, damper)

@@ -78,8 +78,7 @@ def test_a_wall_stiffer_than_the_device_stops_at_its_limit():
         mass.push_N = np.array([0.0, 0.0, -3.0])
         with open_device(service) as device:
             wait_until(
-                lambda: mass.largest_N > 0.99 * MAX_FORCE_N,
-                lambda: press(device, 1e5),
+                lambda: mass.largest_N > 0.99 * MAX_FORCE_N, lambda: press(device, 1e5)
             )
         assert mass.largest_N <= MAX_FORCE_N
 

@@ -216,8 +216,7 @@ def test_a_closed_device_is_released(loop):
     loop.device.close()
     statuses = []
     loop.lcm.Subscribe(
-        "HAPTIC_STATUS",
-        lambda data: statuses.append(lcmt_haptic_status.decode(data)),
+        "HAPTIC_STATUS", lambda data: statuses.append(lcmt_haptic_status.decode(data))
     )
     for _ in range(100):
         loop.tick(1.0)

@@ -72,11 +72,7 @@ class Machine:
 
 def choose(scene, budget_us, machine, **settings):
     return choose_setting(
-        scene,
-        budget_us,
-        make_study=measure,
-        measure_p99=machine,
-        **settings,
+        scene, budget_us, make_study=measure, measure_p99=machine, **settings
     )
 
 

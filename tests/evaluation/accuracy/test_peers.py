@@ -49,9 +49,7 @@ def _scene(folder: Path, tool: trimesh.Trimesh) -> Scene:
         tool=Tool(mesh=str(folder / "tool.obj"), scale=1.0),
         environment=[EnvironmentObject("block", str(folder / "block.obj"))],
         contact=ContactParameters(
-            tolerance_m=_TOLERANCE_M,
-            stiffness_N_per_m=_STIFFNESS,
-            damping_Ns_per_m=0.0,
+            tolerance_m=_TOLERANCE_M, stiffness_N_per_m=_STIFFNESS, damping_Ns_per_m=0.0
         ),
     )
     scene.hand.path.waypoints = [Waypoint(0.0, [0.0, 0.0, 0.1])]

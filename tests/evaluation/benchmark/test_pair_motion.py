@@ -41,9 +41,7 @@ def test_the_motion_keeps_to_its_speeds_and_nearly_reaches_them(kind: str) -> No
     for X_WA in make_presses(make_pair(kind, 42), 2):
         step = np.linalg.norm(np.diff(X_WA[:, :3, 3], axis=0), axis=1)
         R = X_WA[:, :3, :3]
-        turn = Rotation.from_matrix(
-            np.swapaxes(R[:-1], 1, 2) @ R[1:],
-        ).magnitude()
+        turn = Rotation.from_matrix(np.swapaxes(R[:-1], 1, 2) @ R[1:]).magnitude()
         assert 0.99 * 0.2 < step.max() * 1000 <= 0.2
         assert 0.99 * 2.0 < turn.max() * 1000 < 2.0 * (1 + 1e-9)
 

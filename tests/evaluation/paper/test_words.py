@@ -45,11 +45,7 @@ def test_pieces_are_compared_row_by_row():
     [
         (399.0, "better", "less than 399 µs, 5.0 times the paper's 500 Hz, and 100.00"),
         (401.0, "agrees", "less than 401 µs, 5.0 times the paper's 500 Hz, and 100.00"),
-        (
-            1800.0,
-            "agrees",
-            "than 1,800 µs, 1.1 times the paper's 500 Hz, and 0.00",
-        ),
+        (1800.0, "agrees", "than 1,800 µs, 1.1 times the paper's 500 Hz, and 0.00"),
         (5e3, "differs", "less than 5,000 µs, 0.4 times the paper's 500 Hz, and 0.00"),
     ],
 )

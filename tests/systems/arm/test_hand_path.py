@@ -37,10 +37,7 @@ def test_velocity_is_the_rate_of_the_pose(periodic):
         before, after = (vector_to_pose(path.calc(s)[0]) for s in (t - h, t + h))
         turn = (after.rotation() @ before.rotation().inverse()).ToAngleAxis()
         rate = np.concatenate(
-            [
-                turn.angle() * turn.axis(),
-                after.translation() - before.translation(),
-            ]
+            [turn.angle() * turn.axis(), after.translation() - before.translation()]
         ) / (2 * h)
         assert np.linalg.norm(q[:4]) == pytest.approx(1.0, abs=1e-14)
         np.testing.assert_allclose(V, rate, atol=1e-5)

@@ -176,18 +176,10 @@ def test_the_rate_of_the_distance_is_that_of_the_query() -> None:
         carrier = ContactExtrapolation(tool, [other], [None])
         now = seeded(found)
         true = differentiate_contacts(
-            contacts,
-            T,
-            tool,
-            *(_part(now, 0), [other], [_part(now, 1)]),
+            contacts, T, tool, *(_part(now, 0), [other], [_part(now, 1)])
         )
         still = differentiate_contacts(
-            contacts,
-            T,
-            tool,
-            constant(q_WA, 14),
-            [other],
-            [constant(q_WB, 14)],
+            contacts, T, tool, constant(q_WA, 14), [other], [constant(q_WB, 14)]
         )
         carried = carrier.advance(still, constant(found, 14), now)
         np.testing.assert_allclose(

@@ -186,8 +186,7 @@ def test_a_block_on_a_slope_rests_or_slides(tangent):
             clustering.GetOutputPort("clusters"), port.GetInputPort("clusters")
         )
     builder.Connect(
-        contact.GetOutputPort("contact_wrench"),
-        friction.GetInputPort("contact_wrench"),
+        contact.GetOutputPort("contact_wrench"), friction.GetInputPort("contact_wrench")
     )
     for name, system in (
         ("contact", contact),

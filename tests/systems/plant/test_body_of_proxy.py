@@ -57,8 +57,7 @@ def test_the_wrench_is_the_same_about_any_point(is_held):
     p_WTo = read(system, context, "X_WT")[4:]
     np.testing.assert_allclose(found[3:], wrench[3:])
     np.testing.assert_allclose(
-        found[:3] + np.cross(p_WTo, found[3:]),
-        wrench[:3] + np.cross(p_WPo, wrench[3:]),
+        found[:3] + np.cross(p_WTo, found[3:]), wrench[:3] + np.cross(p_WPo, wrench[3:])
     )
 
 

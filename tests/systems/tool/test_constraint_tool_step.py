@@ -150,9 +150,7 @@ def test_the_object_gets_the_reaction():
     # Beside the origin of the plate, which moves: its force has a moment there.
     X_WO = RigidTransform([0.03, -0.02, 0.0])
     step, _, context = rest_pressed(
-        make_step(X_WO=None),
-        X_WO_plate=pose_to_vector(X_WO),
-        V_WO_plate=np.zeros(6),
+        make_step(X_WO=None), X_WO_plate=pose_to_vector(X_WO), V_WO_plate=np.zeros(6)
     )
     F_T, F_O = read(step, context, "F_To_W"), read(step, context, "F_O_W")
     p_WTo = read(step, context, "X_WT")[4:]

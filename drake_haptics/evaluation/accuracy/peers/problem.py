@@ -121,9 +121,7 @@ def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
             d.ravel(), normal, p_WCa, p_WCb, owner.ravel().astype(np.int32)
         )
         wrench = force(
-            clusters=cluster(contacts),
-            p_WTo=motion.X_WT[k, 4:],
-            V_WT=motion.V_WT[k],
+            clusters=cluster(contacts), p_WTo=motion.X_WT[k, 4:], V_WT=motion.V_WT[k]
         )
         F_To_W[k] = wrench.F_To_W
     return PeerAnswers(F_To_W, distance, part.tolerance_m, found.seconds)

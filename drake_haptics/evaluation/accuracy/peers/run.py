@@ -147,10 +147,7 @@ def _explain(library: str, method: PeerMethod, failure_reason: str) -> PeerRow:
 
 
 def add_peers(
-    study: AccuracyStudy,
-    scene: Scene,
-    *,
-    progress: Progress = ignore_progress,
+    study: AccuracyStudy, scene: Scene, *, progress: Progress = ignore_progress
 ) -> AccuracyStudy:
     """Returns a study with a row for each method of another library.
 

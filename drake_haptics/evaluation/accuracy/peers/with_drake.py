@@ -106,11 +106,7 @@ class DrakePlant:
         return typical(seconds)
 
 
-def make_plant(
-    contact_model: str,
-    X_WO: np.ndarray,
-    add: AddGeometry,
-) -> DrakePlant:
+def make_plant(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakePlant:
     """Builds a plant with a tool and objects.
 
     Args:

@@ -17,10 +17,7 @@ SCENE = "drake_haptics, simulated device"
 OURS = "drake_haptics, whole tick"
 NATIVE = "drake_haptics, native part"
 # Bushing and point contact. Name -> contact solver of Drake.
-STOCK = {
-    "Drake, bushing, TAMSI": "tamsi",
-    "Drake, bushing, SAP": "similar",
-}
+STOCK = {"Drake, bushing, TAMSI": "tamsi", "Drake, bushing, SAP": "similar"}
 MUJOCO = "MuJoCo, mj_step"
 EMPTY = "Drake, one empty Python system"
 # Description of the work of each loop in a tick.
