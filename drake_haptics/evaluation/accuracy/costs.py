@@ -25,6 +25,7 @@ from drake_haptics.evaluation.accuracy.native_part import ContactSearch, NativeP
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
 from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.scene_file import load_scene, write_scene
 from drake_haptics.scene.schema import Scene
@@ -144,19 +145,16 @@ def make_native_part(haptic: HapticDiagram) -> NativePart:
 
     Effects are not included; work that a loop may drop under load is.
     """
-    scene, effects = haptic.scene, haptic.scene.effects
-    contact, items = scene.contact, scene.environment
-    stiffness = [item.material.stiffness_N_per_m for item in items]
-    damping = [item.material.damping_Ns_per_m for item in items]
-    query_hz = contact.query_rate_hz
-    braking_m = 0.0 if effects.braking is None else effects.braking.distance_m
+    scene, contact = haptic.scene, haptic.scene.contact
+    items, query_hz = scene.environment, contact.query_rate_hz
+    gains = find_contact_gains(contact, [item.material for item in items])
     return NativePart(
         tool=haptic.tool,
         objects=haptic.environment,
         X_WO=np.array(
             [pose_to_vector(item.pose.to_rigid_transform()) for item in items]
         ),
-        search_m=max(contact.tolerance_m, braking_m),
+        search_m=find_query_tolerance(contact, scene.effects),
         depth=cast(DepthSearch, contact.depth),
         max_walk_steps=contact.max_walk_steps,
         query_every=None
@@ -164,12 +162,8 @@ def make_native_part(haptic: HapticDiagram) -> NativePart:
         else round(scene.device.rate_hz / query_hz),
         tolerance_m=contact.tolerance_m,
         cluster_size_m=contact.cluster_size_m,
-        stiffness_N_per_m=np.array(
-            [contact.stiffness_N_per_m if k is None else k for k in stiffness]
-        ),
-        damping_Ns_per_m=np.array(
-            [contact.damping_Ns_per_m if b is None else b for b in damping]
-        ),
+        stiffness_N_per_m=gains.stiffness_N_per_m,
+        damping_Ns_per_m=gains.damping_Ns_per_m,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import asdict
 
 import numpy as np
 from pydrake.systems.analysis import Simulator
@@ -120,21 +121,15 @@ class NativeLoop:
 
     def __init__(self, problem: LoopProblem):
         self._problem = problem
-        scene, coupling = problem.scene, problem.scene.coupling
-        p_TTcm, I_TTcm_T = problem.mass_properties()
+        scene = problem.scene
         start = np.concatenate([problem.X_WG[0], np.zeros(6)])
         self._arguments = (
             problem.tool.core,
             [part.core for part in problem.objects],
             np.array([pose_to_vector(X) for X in problem.X_WO]),
             scene.contact.tolerance_m,
-            _core.RigidToolDynamics(scene.tool.mass_kg, p_TTcm, I_TTcm_T),
-            _core.CouplingGains(
-                coupling.stiffness_N_per_m,
-                coupling.damping_Ns_per_m,
-                coupling.rotational_stiffness_Nm_per_rad,
-                coupling.rotational_damping_Nms_per_rad,
-            ),
+            _core.RigidToolDynamics(scene.tool.mass_kg, *problem.mass_properties()),
+            _core.CouplingGains(**asdict(scene.coupling)),
             pose_to_vector(problem.X_HT),
             scene.contact.stiffness_N_per_m,
             scene.contact.damping_Ns_per_m,
