@@ -13,6 +13,7 @@ from pydrake.systems.framework import DiagramBuilder
 from drake_haptics import _core
 from drake_haptics.common.files import resolve_package_url
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.loop.haptic_loop import HapticLoop
 from drake_haptics.loop.simulated_device import make_hand_path, place_base
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
@@ -55,25 +56,21 @@ def add_picture(
             enable_load_shedding=loop.load_shedding is not None,
         ),
     )
-    for output, input in [
-        (loop.device.GetOutputPort("X_WH"), visualizer.GetInputPort("X_WH")),
-        (loop.haptic_tool.GetOutputPort("X_WT"), visualizer.GetInputPort("X_WT")),
-        (loop.contacts, visualizer.GetInputPort("contacts")),
-        (loop.clusters, visualizer.GetInputPort("clusters")),
-        (loop.contact_wrench, visualizer.GetInputPort("contact_wrench")),
-        (loop.commanded_wrench, visualizer.GetInputPort("F_Ho_W_commanded")),
-    ]:
-        builder.Connect(output, input)
-    if loop.effects.friction is not None:
-        builder.Connect(
-            loop.effects.friction.GetOutputPort("friction_force"),
-            visualizer.GetInputPort("friction_force"),
-        )
-    if loop.load_shedding is not None:
-        builder.Connect(
-            loop.load_shedding.GetOutputPort("load_shedding"),
-            visualizer.GetInputPort("load_shedding"),
-        )
+    sources = {
+        "X_WH": loop.device.GetOutputPort("X_WH"),
+        "X_WT": loop.haptic_tool.GetOutputPort("X_WT"),
+        "contacts": loop.contacts,
+        "clusters": loop.clusters,
+        "contact_wrench": loop.contact_wrench,
+        "F_Ho_W_commanded": loop.commanded_wrench,
+    }
+    for system, name in (
+        (loop.effects.friction, "friction_force"),
+        (loop.load_shedding, "load_shedding"),
+    ):
+        if system is not None:
+            sources[name] = system.GetOutputPort(name)
+    connect_by_name(builder, visualizer, sources)
     return visualizer
 
 
@@ -136,6 +133,5 @@ def AddTickLog(
         "tick_log_sink",
         TickLogSink(recorder, period_s, has_reading="reading" in sources),
     )
-    for name, source in sources.items():
-        builder.Connect(source, sink.GetInputPort(name))
+    connect_by_name(builder, sink, sources)
     return sink
