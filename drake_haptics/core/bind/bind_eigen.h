@@ -28,8 +28,7 @@ void ImportNumpy();
 /// nanobind passes every array by DLPack and NumPy's `asarray` and `copy`,
 /// which takes a microsecond in each direction for an array of a wrench's size.
 /// Here an array of doubles is read in place, and results are copied into a
-/// fresh one. Lists become arrays first; nanobind still reads all other arrays
-/// that it can.
+/// fresh one. nanobind still reads all other arrays that it can.
 namespace nanobind::detail {
 
 // As an integer: Eigen has an enumeration of its own for each type.
@@ -67,16 +66,8 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
         return array.is_valid() && from_python(array, flags, cleanup);
       }
       default:
-        break;
+        return FromOther(source, flags, cleanup);
     }
-    // Of a list or tuple NumPy makes an array, where conversions are allowed.
-    const bool is_sequence =
-        PyList_Check(source.ptr()) || PyTuple_Check(source.ptr());
-    if (!is_sequence || !(flags & static_cast<uint32_t>(cast_flags::convert))) {
-      return FromOther(source, flags, cleanup);
-    }
-    const object array = AsArray(source.ptr());
-    return array.is_valid() && from_python(array, flags, cleanup);
   }
 
   static handle from_cpp(const T& matrix, rv_policy, cleanup_list*) noexcept {

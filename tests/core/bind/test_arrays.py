@@ -44,20 +44,6 @@ def test_other_numbers_are_converted(dtype):
     assert pass_through(vector).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
 
 
-@pytest.mark.parametrize("make", [list, tuple])
-def test_lists_become_arrays(make):
-    assert pass_through(make(range(6))).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
-    unit = make(np.eye(3).tolist())
-    dynamics = _core.RigidToolDynamics(0.1, make([0.0, 0.0, 0.1]), unit)
-    assert dynamics.p_TTcm.tolist() == [0.0, 0.0, 0.1]
-
-
-@pytest.mark.parametrize("wrong", [[0.0] * 5, ["a"] * 6, [[0.0], [0.0, 0.0]], [None]])
-def test_other_lists_are_refused(wrong):
-    with pytest.raises(TypeError):
-        pass_through(wrong)
-
-
 @pytest.mark.parametrize("item", [ctypes.c_double, ctypes.c_float, ctypes.c_int])
 def test_arrays_of_ctypes_are_converted(item):
     """Their buffers say nothing of strides."""
