@@ -163,6 +163,10 @@ def run(
     except FloatingPointError as error:
         time_s = simulator.get_context().get_time()
         raise RunError(f"stopped at {time_s:.4f} s: {error}", statistics) from error
+    except ValueError:
+        # What computes with a lost tool before the tick ends refuses its state.
+        measure(simulator.get_context(), 0.0, False)
+        raise
     finally:
         gc.unfreeze()
         describe = _make_depth_warner(haptic, simulator.get_context())

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from fake_clock import FakeClock
+from fake_device import ScriptedDevice, make_reading
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.common.real_time import RealTimePacer
@@ -252,6 +253,14 @@ def test_an_arm_that_is_lost_stops_the_run(haptic):
     state.SetAtIndex(state.size() - 1, np.inf)
     with pytest.raises(RunError, match="the arm's state is not finite"):
         run(haptic, 1.0, energy=True, context=root)
+
+
+def test_a_tool_that_is_lost_to_an_absurd_handle_stops_the_run(tmp_path):
+    """The slopes for the device are computed before the tick ends."""
+    scene = over_a_plate(tmp_path, [ABOVE, PRESSING])
+    backend = ScriptedDevice(lambda k: make_reading(k, velocity=(0.0, 0.0, 1e308)))
+    with pytest.raises(RunError, match="the tool's state is not finite"):
+        run(BuildHapticDiagram(scene, device=backend), 1.0)
 
 
 def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
