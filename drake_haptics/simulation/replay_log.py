@@ -71,8 +71,8 @@ def replay(
         The log of this run.
 
     Raises:
-        TickLogError: The log has no first tick or no usable scene, or a value is no
-            longer finite.
+        TickLogError: The log has no first tick or no usable scene, a pose has no unit
+            quaternion, or a value is no longer finite.
         SceneError: The scene is invalid.
         MeshError: A mesh cannot be used.
         OSError: A file cannot be read or written.
@@ -80,13 +80,11 @@ def replay(
     if out is None:
         with tempfile.TemporaryDirectory() as folder:
             return replay(log, scene, out=Path(folder) / "log", progress=progress)
-    ticks = log.count_ticks_from_start()
-    if not ticks:
-        raise TickLogError("the log has no first tick to start from; record again")
+    log.check_replayable()
     if scene is None:
         scene = load_log_scene(log)
     with TickRecorder(out, make_log_header(scene)) as recorder:
-        _run(log, ticks, scene, recorder, progress)
+        _run(log, log.count_ticks_from_start(), scene, recorder, progress)
     return read_tick_log(out)
 
 

@@ -33,7 +33,7 @@ _FILE_HEAD = struct.Struct("<8sHHI")
 _CRC = struct.Struct("<I")
 _MAX_JSON_BYTES = 1 << 24
 # That of a device's readings.
-_QUATERNION_TOLERANCE = 1e-3
+QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def _parse_header(facts: object) -> TickLogHeader:
     if not all(isinstance(x, float) and math.isfinite(x) for x in numbers):
         raise ValueError("a number is not a finite one with a decimal point")
     length = math.hypot(*header.X_WB[:4])
-    is_pose = len(header.X_WB) == 7 and abs(length - 1.0) <= _QUATERNION_TOLERANCE
+    is_pose = len(header.X_WB) == 7 and abs(length - 1.0) <= QUATERNION_TOLERANCE
     if not is_pose or header.period_s <= 0.0:
         raise ValueError("X_WB is a pose of 7 numbers, and period_s is positive")
     return header

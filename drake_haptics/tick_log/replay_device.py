@@ -9,7 +9,6 @@ from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
-    DeviceError,
     DeviceReading,
     GateState,
     LinkStatus,
@@ -33,11 +32,10 @@ class ReplayDevice(DeviceBackend):
         """Opens a log.
 
         Raises:
-            DeviceError: The log has no first tick.
+            TickLogError: The log has no first tick, or a pose has no unit quaternion.
         """
+        log.check_replayable()
         ticks = log.count_ticks_from_start()
-        if not ticks:
-            raise DeviceError("the log has no first tick to start from; record again")
         self._times_s = log.rows["time_s"][:ticks]
         self._buttons = log.rows["buttons"][:ticks]
         self._X_WH, self._V_WH = log.rows["X_WH"], log.rows["V_WH"]

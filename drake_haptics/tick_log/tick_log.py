@@ -8,12 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+import numpy as np
+
 from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.log_format import (
     BLOCK_HEADER_BYTES,
     FILE_MAGIC,
     MAGIC_START,
+    QUATERNION_TOLERANCE,
     BlockHeader,
+    TickLogError,
     TickLogHeader,
     TickRows,
     join_rows,
@@ -158,6 +162,25 @@ class TickLog:
     def count_ticks_from_start(self) -> int:
         """Returns the number of ticks from the start to the first gap."""
         return self.gaps[0].first_tick if self.gaps else len(self.rows)
+
+    def check_replayable(self) -> None:
+        """Checks that a replay has poses to start from and to follow.
+
+        A handle that is NaN passes: it was lost, and ends a replay at its tick.
+
+        Raises:
+            TickLogError: There is no first tick, or a pose has no unit quaternion.
+        """
+        ticks = self.count_ticks_from_start()
+        if not ticks:
+            raise TickLogError("the log has no first tick to start from; record again")
+        for name, end in (("X_WT", 1), ("X_WH", ticks)):
+            lengths = np.linalg.norm(self.rows[name][:end, :4], axis=1)
+            wrong = np.flatnonzero(abs(lengths - 1.0) > QUATERNION_TOLERANCE)
+            if len(wrong):
+                raise TickLogError(
+                    f"{name} of tick {wrong[0]} has no unit quaternion; record again"
+                )
 
 
 class TickLogReader:

@@ -220,3 +220,16 @@ def test_a_handle_that_was_lost_stops_the_replay(tmp_path):
     log.rows["X_WH"][20] = np.nan
     with pytest.raises(TickLogError, match=r"stopped at 0\.02.*not finite"):
         replay(log)
+
+
+@pytest.mark.parametrize(
+    "row", [np.zeros(7), 2.0 * np.eye(7)[0], 1e-200 * np.eye(7)[0]]
+)
+@pytest.mark.parametrize(("name", "tick"), [("X_WH", 20), ("X_WT", 0)])
+def test_a_pose_without_a_unit_quaternion_is_told_with_its_tick(
+    tmp_path, name, tick, row
+):
+    log = record(tmp_path / "log", make_scene(tmp_path, "cube"), 0.05)
+    log.rows[name][tick] = row
+    with pytest.raises(TickLogError, match=f"{name} of tick {tick} has no unit"):
+        replay(log)

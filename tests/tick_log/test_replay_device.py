@@ -11,7 +11,7 @@ from pydrake.systems.analysis import Simulator
 from tick_log_samples import HEADER, make_rows, make_smooth_rows, write_log
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.device.backend import DeviceError, GateState
+from drake_haptics.device.backend import GateState
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.tick_log.log_format import TickLogError
 from drake_haptics.tick_log.replay_device import ReplayDevice
@@ -97,5 +97,13 @@ def test_it_stops_at_a_gap():
 
 def test_a_log_without_its_start_is_refused():
     log = TickLog(HEADER, make_rows(3, first=5), (Gap(0, 5),), 1)
-    with pytest.raises(DeviceError, match="no first tick"):
+    with pytest.raises(TickLogError, match="no first tick"):
+        ReplayDevice(log)
+
+
+@pytest.mark.parametrize("length", [0.0, 0.5, 2.0])
+def test_a_pose_without_a_unit_quaternion_is_told_with_its_tick(length):
+    log = make_log()
+    log.rows["X_WH"][3, :4] *= length
+    with pytest.raises(TickLogError, match="X_WH of tick 3 has no unit quaternion"):
         ReplayDevice(log)
