@@ -43,6 +43,7 @@ class ReplayDevice(DeviceBackend):
         self._to_base = FrameChange(pose_to_vector(X_WB.inverse()))
         self._tick = 0
         self._gate = GateState.IDLE
+        self._is_closed = False
 
     @property
     def is_placed(self) -> bool:
@@ -70,6 +71,8 @@ class ReplayDevice(DeviceBackend):
 
     def write(self, command: DeviceCommand) -> None:
         """Advances by a tick; the first call only starts the replay."""
+        if self._is_closed:
+            return
         if self._gate == GateState.ACTIVE:
             self._tick = min(self._tick + 1, len(self._times_s) - 1)
         self._gate = GateState.ACTIVE
@@ -80,4 +83,5 @@ class ReplayDevice(DeviceBackend):
 
     def close(self) -> None:
         """Stops the replay."""
+        self._is_closed = True
         self._gate = GateState.IDLE

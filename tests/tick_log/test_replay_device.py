@@ -48,6 +48,16 @@ def test_it_stands_until_it_is_enabled_and_moves_by_a_tick_per_command():
     assert device.read().gate == GateState.IDLE
 
 
+def test_a_closed_one_stays_where_it_is():
+    device = ReplayDevice(make_log())
+    device.write(None)
+    device.close()
+    for _ in range(2):
+        device.write(None)
+    reading = device.read()
+    assert (reading.sequence, reading.gate) == (0, GateState.IDLE)
+
+
 def test_it_tells_of_the_handle_in_its_base():
     log = make_log()
     with ReplayDevice(log) as device:
