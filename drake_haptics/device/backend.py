@@ -141,8 +141,9 @@ class DeviceBackend(ABC):
     """A device, real or not. No call ever waits for the device.
 
     A backend is open once it is constructed. It shows no force before the first `write`
-    or after `close`. Use it as a context manager, so that it is closed whatever
-    happens.
+    or after `close`: `write` and `recover` then do nothing, and a reading has no force
+    and a gate that is not `GateState.ACTIVE`. Use it as a context manager, so that it
+    is closed whatever happens.
     """
 
     def __repr__(self) -> str:

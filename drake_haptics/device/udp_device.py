@@ -14,6 +14,7 @@ from drake_haptics.device.backend import (
     Fault,
     GateState,
     LinkStatus,
+    make_silent,
 )
 
 
@@ -79,8 +80,8 @@ class UdpDevice(DeviceBackend):
     def read(self) -> DeviceReading | None:
         """Returns the newest reading; None before the first has come."""
         state = self._servo.read()
-        if state is None:
-            return None
+        if state is None or not self._finalizer.alive:
+            return self._reading
         last = self._reading
         gate, fault = _GATES[state.gate], _FAULTS[state.fault]
         # A fault on this side occurs without a new sample.
@@ -134,6 +135,7 @@ class UdpDevice(DeviceBackend):
         """Ends at zero force and releases the device; may be called again."""
         self.end_contact_servo()
         self._finalizer()
+        self._reading = self._reading and make_silent(self._reading)
 
     def get_link_status(self) -> LinkStatus:
         """Returns the state of the connection to the device."""

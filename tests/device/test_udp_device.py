@@ -98,6 +98,20 @@ def test_it_may_be_closed_twice(driver, device):
     device.recover()
 
 
+def test_a_closed_device_rests_without_force(driver, device):
+    driver.receive()
+    device.write(PUSH)
+    wait_until(lambda: driver.exchange(gate=IDLE).enable)
+    driver.exchange(V_BH=np.ones(6), F_Ho_B=np.ones(6), gate=ACTIVE)
+    wait_until(lambda: device.read().gate == GateState.ACTIVE)
+    device.close()
+    device.write(PUSH)
+    device.recover()
+    reading = device.read()
+    assert (reading.gate, reading.fault) == (GateState.FAULT, Fault.DEVICE)
+    assert not reading.F_Ho_B.any() and not reading.V_BH.any()
+
+
 def test_an_address_that_cannot_be_is_told():
     with pytest.raises(DeviceError, match=r"no\.such\.host\.invalid"):
         UdpDevice("no.such.host.invalid", 7400)

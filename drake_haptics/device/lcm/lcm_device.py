@@ -277,6 +277,7 @@ class LcmDevice(DeviceBackend):
             for _ in range(_CLOSING_RELEASES):
                 self._send(np.zeros(6), enable=False)
             self._is_closed = True
+            self._reading = self._reading and make_silent(self._reading)
 
     def get_link_status(self) -> LinkStatus:
         """Returns the counts of messages, and of commands that the device refused."""
@@ -299,6 +300,8 @@ class LcmDevice(DeviceBackend):
 
     def _receive(self, data: bytes) -> None:
         """Receives a status, or refuses and counts it."""
+        if self._is_closed:  # others that share the LCM handle its subscriptions, too
+            return
         try:
             status = lcmt_haptic_status.decode(data)
         except ValueError:

@@ -223,6 +223,9 @@ def test_a_closed_device_is_released(loop):
     assert (statuses[-1].gate, statuses[-1].fault) == (GateState.IDLE, Fault.NONE)
     assert not any(statuses[-1].wrench)
     assert not any(sent.enable for sent in loop.sent[-3:])
+    reading = loop.device.read()
+    assert (reading.gate, reading.fault) == (GateState.FAULT, Fault.DEVICE)
+    assert not reading.F_Ho_B.any() and not reading.V_BH.any()
 
 
 class Wire:
