@@ -42,7 +42,7 @@ from drake_haptics.scene.validation import RATES_HZ
     default="127.0.0.1",
     show_default=True,
     metavar="ADDRESS",
-    help="Address to listen at. Any host that reaches it can move the device.",
+    help="IPv4 address to listen at. Any host that reaches it can move the device.",
 )
 @click.option(
     "--rate",

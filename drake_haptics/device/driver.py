@@ -84,7 +84,7 @@ class DeviceDriver:
         max_torque_Nm: Largest torque, N·m.
         max_ttl_s: Longest time that a command is shown without a newer one, s.
         rate_hz: Ticks per second, Hz.
-        bind: Address to listen at; only this machine can reach 127.0.0.1.
+        bind: IPv4 address to listen at; only this machine can reach 127.0.0.1.
         port: UDP port to listen at; 0 lets the system choose.
         clock_ns: Reads a clock that never goes back and runs during suspension, ns.
 
@@ -357,7 +357,7 @@ class DriverSocket:
     """Receives commands and sends states.
 
     Args:
-        host: Address to listen at; only this machine can reach 127.0.0.1.
+        host: IPv4 address to listen at; only this machine can reach 127.0.0.1.
         port: Port to listen at; 0 lets the system choose.
 
     Raises:
@@ -421,6 +421,6 @@ def _explain(error: Exception, host: str, port: int) -> str:
     if error.errno == errno.EACCES:
         return f"port {port} needs rights that you lack: choose one from 1024 on"
     return (
-        f"bind {host}: {error.strerror or error}; give an address of this machine,"
+        f"bind {host}: {error.strerror or error}; give an IPv4 address of this machine,"
         " such as 127.0.0.1"
     )

@@ -130,7 +130,7 @@ def make_simulated_driver(
         scene: Scene that names the device, its place and its hand.
         rate_hz: Ticks per second, Hz. None for the scene's rate.
         max_ttl_s: Longest time that a command is shown without a newer one, s.
-        bind: Address to listen at.
+        bind: IPv4 address to listen at.
         port: UDP port to listen at.
 
     Raises:

@@ -65,6 +65,11 @@ def test_an_address_of_another_machine_is_the_users_error(address):
         DriverSocket(address, 0)
 
 
+def test_an_address_of_ipv6_is_told_that_it_must_be_ipv4():
+    with pytest.raises(HapticsError, match=r"^bind ::1: .*give an IPv4 address"):
+        DriverSocket("::1", 0)
+
+
 def test_no_address_is_not_taken_for_every_address():
     with pytest.raises(HapticsError, match=r"^bind is empty"):
         DriverSocket("", 0)
