@@ -11,6 +11,7 @@ import numpy as np
 
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.concave_polygons import FOLDED
 from drake_haptics.geometry.mesh.report import Findings, Severity, length
 from drake_haptics.geometry.mesh.topology import (
     Edges,
@@ -29,8 +30,6 @@ _SMALL_HOLES = (
     'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
     ' m.export("new.stl")'
 )
-# Angle between neighbors, rad: rounded corners of a fold do not lie in one plane.
-_FOLDED = 1e-3
 # Squares and cubes of larger coordinates could overflow.
 _LARGEST_COORDINATE_M = 1e9
 
@@ -88,7 +87,7 @@ def _measure_rims(edges: Edges, is_open: np.ndarray) -> np.ndarray:
 def check_folds(
     vertices: np.ndarray, triangles: np.ndarray, thick: np.ndarray, findings: Findings
 ) -> None:
-    """Reports neighbors that lie on each other, which fill what is beside a polygon.
+    """Reports neighbors that lie on each other.
 
     Args:
         vertices: (n, 3) vertices.
@@ -100,7 +99,7 @@ def check_folds(
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     a, b = find_edges(triangles[thick]).pairs.T
     turn = np.linalg.norm(normals[thick][a] + normals[thick][b], axis=1)
-    folded = int((turn < _FOLDED).sum())
+    folded = int((turn < FOLDED).sum())
     findings.add(
         "folds",
         Severity.DEFECT,
@@ -110,8 +109,7 @@ def check_folds(
             "edge has both its triangles on the same side, one on the other",
             "edges have both their triangles on the same side, one on the other",
         ),
-        "left as they are, and felt. If the file has concave polygons, which are read"
-        " as fans, export it as triangles",
+        "left as they are, and felt",
     )
 
 

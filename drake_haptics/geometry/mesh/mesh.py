@@ -26,6 +26,7 @@ from drake_haptics.geometry.mesh.checks import (
     check_size,
     checked_arrays,
 )
+from drake_haptics.geometry.mesh.concave_polygons import triangulate_concave_polygons
 from drake_haptics.geometry.mesh.reader import read_mesh_file
 from drake_haptics.geometry.mesh.repair import (
     distinct_faces,
@@ -185,6 +186,7 @@ def _take_in(
         F = F[distinct_faces(twin[F], findings)]
         F = join_open_parts(F, twin, findings)
         F = remove_zero_area_faces(V, F, findings)
+        F = triangulate_concave_polygons(V, F, findings)
     except MeshError as error:
         raise MeshError(f"{name}: {error}") from None
     findings.add(

@@ -371,22 +371,6 @@ def test_a_sheet_folded_on_itself_is_no_solid():
     assert mesh.components[0].closed and not mesh.solid.any()
 
 
-@pytest.mark.parametrize(("first", "folds"), [(0, 0), (1, 1), (2, 0), (3, 1)])
-def test_a_concave_polygon_that_was_read_as_a_fan_is_named(tmp_path, first, folds):
-    """An arrowhead: the fans from two of its corners cover more than it."""
-    corners = [(0, 0), (1, 0), (0.2, 0.2), (0, 1)]
-    corners = corners[first:] + corners[:first]
-    lines = [f"v {x} {y} {z}" for z in (0, 1) for x, y in corners]
-    lines += ["f 1 4 3 2", "f 5 6 7 8"]
-    lines += [f"f {i + 1} {j + 1} {j + 5} {i + 5}" for i, j in pairwise([*range(4), 0])]
-    file = tmp_path / "arrow.obj"
-    file.write_text("\n".join(lines))
-    mesh = load_mesh(file)
-    assert mesh.report.solids == 1
-    assert codes(mesh).get("folds", 0) == 2 * folds
-    assert all("as triangles" in finding.action for finding in mesh.report.unclean)
-
-
 @pytest.mark.parametrize(
     ("size", "questioned"), [(9, 0), (11, 1), (2e-3, 0), (9e-4, 1)]
 )

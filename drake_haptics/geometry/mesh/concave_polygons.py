@@ -1,0 +1,151 @@
+"""Triangulates concave polygons that a reader has cut into fans."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.repair import find_slivers
+from drake_haptics.geometry.mesh.report import Findings, Severity
+from drake_haptics.geometry.mesh.topology import (
+    connected_labels,
+    find_edges,
+    triangle_area_vectors,
+)
+
+# Angle between neighbors, rad: rounded corners of a polygon do not lie in one plane.
+FOLDED = 1e-3
+
+
+def triangulate_concave_polygons(
+    vertices: np.ndarray, triangles: np.ndarray, findings: Findings
+) -> np.ndarray:
+    """Cuts flat faces that lie on themselves into triangles again.
+
+    Readers cut each polygon of a file into a fan of triangles. If the polygon is
+    concave, some of them are wound against it and lie on others, and together they fill
+    its notch. Their outline is that of the polygon all the same, so that the face is
+    triangulated within it.
+
+    Args:
+        vertices: (n, 3) vertices.
+        triangles: (m, 3) triangles, all with an area.
+        findings: List to which the finding is appended.
+
+    Returns:
+        (k, 3) triangles. A face whose outline is no polygon is left as it is.
+    """
+    edges = find_edges(triangles)
+    normals = triangle_area_vectors(vertices, triangles)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    pairs = edges.pairs[edges.pair_opposed]
+    a, b = normals[pairs[:, 0]], normals[pairs[:, 1]]
+    is_folded = np.linalg.norm(a + b, axis=1) < FOLDED
+    if not is_folded.any():
+        return triangles
+    folds = edges.ends[edges.count == 2][edges.pair_opposed][is_folded]
+    flat = pairs[is_folded | (np.linalg.norm(a - b, axis=1) < FOLDED)]
+    face = connected_labels(len(triangles), flat)
+    face_of_fold = face[pairs[is_folded, 0]]
+    flat = flat[np.isin(face[flat[:, 0]], face_of_fold)]
+    keep = np.ones(len(triangles), dtype=bool)
+    replaced = []
+    for fold, label in zip(folds, face_of_fold, strict=True):
+        flat = flat[keep[flat].all(axis=1)]
+        in_face = flat[face[flat[:, 0]] == label]
+        found, members = _unfold(vertices, triangles, fold, in_face)
+        if found is not None:
+            keep[members] = False
+            replaced.append(found)
+    findings.add(
+        "concave-polygons",
+        Severity.REPAIRED,
+        len(replaced),
+        count(
+            len(replaced),
+            "flat face lies on itself, as a concave polygon does",
+            "flat faces lie on themselves, as concave polygons do",
+        )
+        + " that is read as a fan of triangles",
+        "triangulated again within the outline",
+    )
+    return np.concatenate([triangles[keep], *replaced])
+
+
+def _unfold(
+    vertices: np.ndarray, triangles: np.ndarray, fold: np.ndarray, flat: np.ndarray
+) -> tuple[np.ndarray | None, np.ndarray]:
+    """Finds the part of a flat face about a fold that has the outline of a polygon.
+
+    Args:
+        vertices: (n, 3) vertices.
+        triangles: (m, 3) triangles.
+        fold: (2,) ends of the edge; one is where the fan begins.
+        flat: (p, 2) neighbors within the face.
+
+    Returns:
+        found: Triangles within the outline; None if no part of the face has one.
+        members: Triangles of the file that they replace.
+    """
+    members = np.unique(flat)
+    members = members[np.isin(triangles[members], fold).any(axis=1)]
+    while members.size:
+        beside = np.setdiff1d(flat[np.isin(flat, members).any(axis=1)], members)
+        whole = triangle_area_vectors(vertices, triangles[members]).sum(axis=0)
+        around = triangle_area_vectors(vertices, triangles[beside])
+        if (around @ whole > 0).all():
+            found = _triangulate_outline(vertices, triangles[members])
+            if found is not None:
+                return found, members
+        if not beside.size:
+            break
+        members = np.union1d(members, beside)
+    return None, members
+
+
+def _triangulate_outline(
+    vertices: np.ndarray, triangles: np.ndarray
+) -> np.ndarray | None:
+    """Returns triangles within the outline; None if it is no polygon in a plane."""
+    areas = triangle_area_vectors(vertices, triangles)
+    whole = areas.sum(axis=0)
+    area = float(np.linalg.norm(whole))
+    loops = list(_find_loops(triangles))
+    corners = np.concatenate([np.empty(0, dtype=np.int64), *loops])
+    # One that returns to a vertex can be cut in several ways.
+    if not area or len(np.unique(corners)) < len(corners):
+        return None
+    n = whole / area
+    size = np.linalg.norm(areas, axis=1, keepdims=True)
+    if np.linalg.norm(np.cross(areas / size, n), axis=1).max() > FOLDED:
+        return None
+    import manifold3d  # only if needed
+
+    u = np.cross(n, np.eye(3)[np.abs(n).argmin()])
+    plane = np.stack([u, np.cross(n, u)], axis=1) / np.linalg.norm(u)
+    cut = manifold3d.triangulate([vertices[loop] @ plane for loop in loops])
+    found = corners[cut]
+    # Those of an outline that crosses itself lie on each other again.
+    total = np.linalg.norm(triangle_area_vectors(vertices, found), axis=1).sum()
+    if not np.isclose(total, area) or find_slivers(vertices, found).any():
+        return None
+    return found
+
+
+def _find_loops(triangles: np.ndarray) -> Iterator[np.ndarray]:
+    """Yields the vertices of each loop of the rim, in the sense of the triangles."""
+    starts = triangles.ravel().tolist()
+    ends = triangles[:, [1, 2, 0]].ravel().tolist()
+    inner = set(zip(ends, starts, strict=True))
+    after = {
+        start: end
+        for start, end in zip(starts, ends, strict=True)
+        if (start, end) not in inner
+    }
+    while after:
+        loop = [next(iter(after))]
+        while (end := after.pop(loop[-1], None)) is not None and end != loop[0]:
+            loop.append(end)
+        yield np.array(loop)
