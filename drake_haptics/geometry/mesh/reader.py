@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import codecs
+import io
 import logging
 import os
 import struct
@@ -109,7 +111,11 @@ def _read_with_trimesh(path: Path) -> RawMesh:
         )
     try:
         with _silent_trimesh():
-            scene = trimesh.load_scene(path, process=False)
+            scene = trimesh.load_scene(
+                _plain_obj(path) if path.suffix.lower() == ".obj" else path,
+                file_type=path.suffix,
+                process=False,
+            )
     except Exception as error:  # trimesh's readers raise various errors
         raise MeshError(
             f"{path}: cannot be read as {path.suffix} "
@@ -117,6 +123,12 @@ def _read_with_trimesh(path: Path) -> RawMesh:
             f"its name says: export it again"
         ) from error
     return _merge_scene(path, scene)
+
+
+def _plain_obj(path: Path) -> io.BytesIO:
+    """Returns an OBJ file as trimesh reads it: Unix line ends, no tabs, no mark."""
+    data = path.read_bytes().removeprefix(codecs.BOM_UTF8)
+    return io.BytesIO(b"\n".join(data.splitlines()).replace(b"\t", b" "))
 
 
 @contextmanager
