@@ -50,32 +50,44 @@ def triangulate_concave_polygons(
     face = connected_labels(len(triangles), flat)
     face_of_fold = face[pairs[is_folded, 0]]
     flat = flat[np.isin(face[flat[:, 0]], face_of_fold)]
+    taken = _halfedges(triangles)
     keep = np.ones(len(triangles), dtype=bool)
     replaced = []
     for fold, label in zip(folds, face_of_fold, strict=True):
         flat = flat[keep[flat].all(axis=1)]
         in_face = flat[face[flat[:, 0]] == label]
-        found, members = _unfold(vertices, triangles, fold, in_face)
+        found, members = _unfold(vertices, triangles, fold, in_face, taken)
         if found is not None:
             keep[members] = False
             replaced.append(found)
+            taken -= _halfedges(triangles[members])
+            taken |= _halfedges(found)
     findings.add(
         "concave-polygons",
         Severity.REPAIRED,
         len(replaced),
         count(
             len(replaced),
-            "flat face lies on itself, as a concave polygon does",
-            "flat faces lie on themselves, as concave polygons do",
-        )
-        + " that is read as a fan of triangles",
+            "flat face lies on itself, like a concave polygon read as a fan",
+            "flat faces lie on themselves, like concave polygons read as fans",
+        ),
         "triangulated again within the outline",
     )
     return np.concatenate([triangles[keep], *replaced])
 
 
+def _halfedges(triangles: np.ndarray) -> set[tuple[int, int]]:
+    """Returns start and end of each side of each triangle."""
+    starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    return set(zip(starts.tolist(), ends.tolist(), strict=True))
+
+
 def _unfold(
-    vertices: np.ndarray, triangles: np.ndarray, fold: np.ndarray, flat: np.ndarray
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    fold: np.ndarray,
+    flat: np.ndarray,
+    taken: set[tuple[int, int]],
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """Finds the part of a flat face about a fold that has the outline of a polygon.
 
@@ -84,6 +96,7 @@ def _unfold(
         triangles: (m, 3) triangles.
         fold: (2,) ends of the edge; one is where the fan begins.
         flat: (p, 2) neighbors within the face.
+        taken: Sides of all triangles: an edge has one triangle on either side.
 
     Returns:
         found: Triangles within the outline; None if no part of the face has one.
@@ -98,7 +111,9 @@ def _unfold(
         if (around @ whole > 0).all():
             found = _triangulate_outline(vertices, triangles[members])
             if found is not None:
-                return found, members
+                new = _halfedges(found) - _halfedges(triangles[members])
+                if new.isdisjoint(taken):
+                    return found, members
         if not beside.size:
             break
         members = np.union1d(members, beside)
@@ -136,14 +151,8 @@ def _triangulate_outline(
 
 def _find_loops(triangles: np.ndarray) -> Iterator[np.ndarray]:
     """Yields the vertices of each loop of the rim, in the sense of the triangles."""
-    starts = triangles.ravel().tolist()
-    ends = triangles[:, [1, 2, 0]].ravel().tolist()
-    inner = set(zip(ends, starts, strict=True))
-    after = {
-        start: end
-        for start, end in zip(starts, ends, strict=True)
-        if (start, end) not in inner
-    }
+    sides = _halfedges(triangles)
+    after = {start: end for start, end in sorted(sides) if (end, start) not in sides}
     while after:
         loop = [next(iter(after))]
         while (end := after.pop(loop[-1], None)) is not None and end != loop[0]:

@@ -121,3 +121,13 @@ def test_a_fold_that_is_no_polygon_is_left_and_named():
         np.array(V, dtype=float), [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]]
     )
     assert counts(mesh)["folds"] == 1 and "concave-polygons" not in counts(mesh)
+
+
+def test_an_edge_of_two_others_gets_no_third_triangle():
+    """The arrow could only be cut along an edge that a roof above it has."""
+    V = [(*p, 0) for p in ARROW] + [(1, 0, 1), (0, 1, 1)]
+    roof = [[0, 2, 5], [2, 0, 4]]
+    mesh = Mesh.from_arrays(np.array(V, dtype=float), [[0, 1, 3], [1, 2, 3], *roof])
+    assert counts(mesh)["folds"] == 1
+    assert "concave-polygons" not in counts(mesh)
+    assert "non-manifold-edges" not in counts(mesh)
