@@ -45,19 +45,29 @@ def triangulate_concave_polygons(
     is_folded = np.linalg.norm(a + b, axis=1) < FOLDED
     if not is_folded.any():
         return triangles
+    folded = pairs[is_folded]
     folds = edges.ends[edges.count == 2][edges.pair_opposed][is_folded]
     flat = pairs[is_folded | (np.linalg.norm(a - b, axis=1) < FOLDED)]
     face = connected_labels(len(triangles), flat)
-    face_of_fold = face[pairs[is_folded, 0]]
+    face_of_fold = face[folded[:, 0]]
     flat = flat[np.isin(face[flat[:, 0]], face_of_fold)]
     taken = _halfedges(triangles)
     keep = np.ones(len(triangles), dtype=bool)
     replaced = []
-    for fold, label in zip(folds, face_of_fold, strict=True):
-        flat = flat[keep[flat].all(axis=1)]
-        in_face = flat[face[flat[:, 0]] == label]
-        found, members = _unfold(vertices, triangles, fold, in_face, taken)
-        if found is not None:
+    for label in np.unique(face_of_fold):
+        whole = np.unique(flat[face[flat[:, 0]] == label])
+        about_folds = (
+            whole[np.isin(triangles[whole], fold).any(axis=1)]
+            for fold in folds[face_of_fold == label]
+        )
+        for members in (whole, *about_folds):
+            # One that ends at a fold would stay folded there.
+            is_cut = (np.isin(folded, members).sum(axis=1) == 1).any()
+            if is_cut or not keep[members].all():
+                continue
+            found = _triangulate_outline(vertices, triangles[members])
+            if found is None or not _fits(found, triangles[members], taken):
+                continue
             keep[members] = False
             replaced.append(found)
             taken -= _halfedges(triangles[members])
@@ -82,42 +92,9 @@ def _halfedges(triangles: np.ndarray) -> set[tuple[int, int]]:
     return set(zip(starts.tolist(), ends.tolist(), strict=True))
 
 
-def _unfold(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    fold: np.ndarray,
-    flat: np.ndarray,
-    taken: set[tuple[int, int]],
-) -> tuple[np.ndarray | None, np.ndarray]:
-    """Finds the part of a flat face about a fold that has the outline of a polygon.
-
-    Args:
-        vertices: (n, 3) vertices.
-        triangles: (m, 3) triangles.
-        fold: (2,) ends of the edge; one is where the fan begins.
-        flat: (p, 2) neighbors within the face.
-        taken: Sides of all triangles: an edge has one triangle on either side.
-
-    Returns:
-        found: Triangles within the outline; None if no part of the face has one.
-        members: Triangles of the file that they replace.
-    """
-    members = np.unique(flat)
-    members = members[np.isin(triangles[members], fold).any(axis=1)]
-    while members.size:
-        beside = np.setdiff1d(flat[np.isin(flat, members).any(axis=1)], members)
-        whole = triangle_area_vectors(vertices, triangles[members]).sum(axis=0)
-        around = triangle_area_vectors(vertices, triangles[beside])
-        if (around @ whole > 0).all():
-            found = _triangulate_outline(vertices, triangles[members])
-            if found is not None:
-                new = _halfedges(found) - _halfedges(triangles[members])
-                if new.isdisjoint(taken):
-                    return found, members
-        if not beside.size:
-            break
-        members = np.union1d(members, beside)
-    return None, members
+def _fits(found: np.ndarray, replaced: np.ndarray, taken: set[tuple[int, int]]) -> bool:
+    """Whether each new edge has no other triangles than the new ones."""
+    return (_halfedges(found) - _halfedges(replaced)).isdisjoint(taken)
 
 
 def _triangulate_outline(
@@ -129,8 +106,9 @@ def _triangulate_outline(
     area = float(np.linalg.norm(whole))
     loops = list(_find_loops(triangles))
     corners = np.concatenate([np.empty(0, dtype=np.int64), *loops])
-    # One that returns to a vertex can be cut in several ways.
-    if not area or len(np.unique(corners)) < len(corners):
+    # One that returns to a vertex can be cut in several ways, and a polygon has no
+    # vertex within.
+    if not area or not np.array_equal(np.sort(corners), np.unique(triangles)):
         return None
     n = whole / area
     size = np.linalg.norm(areas, axis=1, keepdims=True)
