@@ -27,12 +27,18 @@ constexpr double kBulge = 2 * kSurfaceSlack;
 // all directions between those in it.
 constexpr double kWidest = 0.1;
 
+bool IsInNormalCone(const Vec3& n, std::span<const Vec3> ring) {
+  return std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
+    return n.dot(r) <= kSurfaceSlack + kLoose;
+  });
+}
+
 class Collection {
  public:
   explicit Collection(const Polytope& piece) : piece_(piece) {}
 
   // Returns false if corners do not bound the directions.
-  bool Run() {
+  bool Run(std::span<const std::span<const Vec3>> ring_corners) {
     for (const Polytope::Facet& facet : piece_.facets) {
       if (facet.original) corners_.push_back(facet.normal);
     }
@@ -43,7 +49,7 @@ class Collection {
       }
     }
     for (int v = 0; v < piece_.num_vertices(); ++v) {
-      if (!AddVertex(v)) return false;
+      if (!AddVertex(v, ring_corners[v])) return false;
     }
     return true;
   }
@@ -60,35 +66,14 @@ class Collection {
   }
 
  private:
-  // Adds the directions n with n · r = slack for two r of the ring, and n · r
-  // within the slack for the others.
-  bool AddVertex(int v) {
+  bool AddVertex(int v, std::span<const Vec3> ring_corners) {
     const auto ring = piece_.ring_of(v);
     if (ring.size() < 3) return false;
     const Vec3* flat = FindFlatFacet(v, ring);
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const Vec3 between =
-            (ring[i] + ring[j]) * (kSurfaceSlack / (1 + ring[i].dot(ring[j])));
-        const double rest = 1 - between.squaredNorm();
-        const Vec3 across = ring[i].cross(ring[j]);
-        // Collinear edges define no corner; the rest of the ring bounds n.
-        if (!(rest > 0) || !(across.squaredNorm() > 1e-20)) continue;
-        const Vec3 aside = across.normalized() * std::sqrt(rest);
-        for (const Vec3& n : {Vec3(between + aside), Vec3(between - aside)}) {
-          if (IsInNormalCone(n, ring) && !(flat && flat->dot(n) < 0)) {
-            corners_.push_back(n);
-          }
-        }
-      }
+    for (const Vec3& n : ring_corners) {
+      if (!(flat && flat->dot(n) < 0)) corners_.push_back(n);
     }
     return true;
-  }
-
-  static bool IsInNormalCone(const Vec3& n, std::span<const Vec3> ring) {
-    return std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
-      return n.dot(r) <= kSurfaceSlack + kLoose;
-    });
   }
 
   // The normal of the plane in which the mesh lies all around a vertex, which
@@ -140,10 +125,32 @@ void FillEdgeNormalArcs(Polytope* piece) {
   }
 }
 
-DirectionCone FindPatchNormalCone(const Polytope& piece) {
+std::vector<Vec3> FindRingCorners(std::span<const Vec3> ring) {
+  std::vector<Vec3> corners;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec3 between =
+          (ring[i] + ring[j]) * (kSurfaceSlack / (1 + ring[i].dot(ring[j])));
+      const double rest = 1 - between.squaredNorm();
+      const Vec3 across = ring[i].cross(ring[j]);
+      // Collinear edges define no corner; the rest of the ring bounds n.
+      if (!(rest > 0) || !(across.squaredNorm() > 1e-20)) continue;
+      const Vec3 aside = across.normalized() * std::sqrt(rest);
+      for (const Vec3& n : {Vec3(between + aside), Vec3(between - aside)}) {
+        if (IsInNormalCone(n, ring)) corners.push_back(n);
+      }
+    }
+  }
+  return corners;
+}
+
+DirectionCone FindPatchNormalCone(
+    const Polytope& piece,
+    std::span<const std::span<const Vec3>> ring_corners) {
   Collection collection(piece);
-  return piece.dimension < 2 || !collection.Run() ? DirectionCone()
-                                                  : collection.Cone();
+  return piece.dimension < 2 || !collection.Run(ring_corners)
+             ? DirectionCone()
+             : collection.Cone();
 }
 
 }  // namespace drake_haptics

@@ -132,15 +132,15 @@ Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
   result.triangles.assign(triangles.begin(), triangles.end());
   result.piece_of_triangle.assign(piece_of_triangle.begin(),
                                   piece_of_triangle.end());
-  const MeshTopology topology(result.vertices, result.triangles);
+  MeshTopology topology(result.vertices, result.triangles);
   const double tolerance = SurfaceTolerance(result.vertices, result.triangles);
   std::vector<std::vector<int>> patches = RequirePieces(piece_of_triangle);
   // The list grows in the loop.
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    SurfacePiece piece = MakeSurfacePiece(topology, patches[i], tolerance);
+    SurfacePiece piece = MakeSurfacePiece(patches[i], tolerance, &topology);
     while (!piece.lost.empty()) {
       SeparateLost(piece.lost, i, &patches, &result.piece_of_triangle);
-      piece = MakeSurfacePiece(topology, patches[i], tolerance);
+      piece = MakeSurfacePiece(patches[i], tolerance, &topology);
     }
     result.pieces.push_back(std::move(piece.polytope));
   }

@@ -9,7 +9,7 @@
 namespace drake_haptics {
 namespace {
 
-// Sets the wings and rings of a piece from the mesh around it.
+// Sets the outer wings of a piece from the mesh around it.
 class SurfaceAround {
  public:
   SurfaceAround(const MeshTopology& mesh, std::span<const int> patch,
@@ -29,24 +29,6 @@ class SurfaceAround {
       if (left == right) continue;
       edge.wings[left ? 1 : 0] =
           OuterWing(edge, piece_.facets[left ? edge.left : edge.right].normal);
-    }
-  }
-
-  void SetRings() {
-    piece_.ring_start.assign(1, 0);
-    piece_.ring.clear();
-    for (const int v : source_) {
-      std::vector<int> ends;
-      for (const int t : mesh_.triangles_at(v)) {
-        for (const int w : mesh_.triangles[t]) ends.push_back(w);
-      }
-      std::sort(ends.begin(), ends.end());
-      ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-      for (const int w : ends) {
-        const Vec3 along = mesh_.vertices[w] - mesh_.vertices[v];
-        if (!along.isZero(0)) piece_.ring.push_back(along.stableNormalized());
-      }
-      piece_.ring_start.push_back(static_cast<int>(piece_.ring.size()));
     }
   }
 
@@ -124,7 +106,8 @@ MeshTopology::MeshTopology(std::span<const Vec3> vertices_in,
       triangles(triangles_in),
       sides(SortedSides(triangles_in)),
       vertex_triangle_start(vertices_in.size() + 1, 0),
-      vertex_triangle(3 * triangles_in.size()) {
+      vertex_triangle(3 * triangles_in.size()),
+      rings(vertices_in.size()) {
   for (const Triangle& t : triangles) {
     for (const int v : t) ++vertex_triangle_start[v + 1];
   }
@@ -150,15 +133,39 @@ std::span<const TriangleSide> MeshTopology::SidesOf(int a, int b) const {
   return {first, last};
 }
 
-void ConnectToSurface(const MeshTopology& mesh, std::span<const int> patch,
-                      std::span<const int> source, double tolerance,
-                      Polytope* piece) {
-  SurfaceAround around(mesh, patch, source, tolerance, piece);
+const MeshRing& MeshTopology::RingAt(int vertex) {
+  std::optional<MeshRing>& ring = rings[vertex];
+  if (ring) return *ring;
+  ring.emplace();
+  std::vector<int> ends;
+  for (const int t : triangles_at(vertex)) {
+    for (const int w : triangles[t]) ends.push_back(w);
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (const int w : ends) {
+    const Vec3 along = vertices[w] - vertices[vertex];
+    if (!along.isZero(0)) ring->edges.push_back(along.stableNormalized());
+  }
+  ring->corners = FindRingCorners(ring->edges);
+  return *ring;
+}
+
+void ConnectToSurface(std::span<const int> patch, std::span<const int> source,
+                      double tolerance, MeshTopology* mesh, Polytope* piece) {
   MarkEdgesFromFacets(piece);
-  around.SetOuterWings();
-  around.SetRings();
+  SurfaceAround(*mesh, patch, source, tolerance, piece).SetOuterWings();
+  piece->ring_start.assign(1, 0);
+  piece->ring.clear();
+  std::vector<std::span<const Vec3>> corners;
+  for (const int v : source) {
+    const MeshRing& ring = mesh->RingAt(v);
+    piece->ring.insert(piece->ring.end(), ring.edges.begin(), ring.edges.end());
+    piece->ring_start.push_back(static_cast<int>(piece->ring.size()));
+    corners.push_back(ring.corners);
+  }
   FillEdgeNormalArcs(piece);
-  piece->normal_cone = FindPatchNormalCone(*piece);
+  piece->normal_cone = FindPatchNormalCone(*piece, corners);
 }
 
 void MarkEdgesFromFacets(Polytope* piece) {

@@ -119,23 +119,23 @@ std::vector<int> FindLost(const MeshTopology& mesh, std::span<const int> patch,
 
 }  // namespace
 
-SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
-                              std::span<const int> patch, double tolerance) {
+SurfacePiece MakeSurfacePiece(std::span<const int> patch, double tolerance,
+                              MeshTopology* mesh) {
   assert(!patch.empty() && std::is_sorted(patch.begin(), patch.end()));
   std::vector<int> corners;
   for (const int t : patch) {
-    const Triangle& triangle = mesh.triangles[t];
+    const Triangle& triangle = mesh->triangles[t];
     corners.insert(corners.end(), triangle.begin(), triangle.end());
   }
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<Vec3> points;
-  for (const int v : corners) points.push_back(mesh.vertices[v]);
+  for (const int v : corners) points.push_back(mesh->vertices[v]);
 
-  const bool closed = IsClosed(mesh, patch);
+  const bool closed = IsClosed(*mesh, patch);
   const HullShape shape =
       closed ? FindHullShape(points, kFacetTolerances * tolerance)
-             : FindOpenShape(mesh, patch, points, tolerance);
+             : FindOpenShape(*mesh, patch, points, tolerance);
   SurfacePiece piece{MakePolytope(points, shape), {}};
   // The hull of a closed patch is the whole surface. Mesh edges that end at no
   // corner of the hull, and may be shorter than the hull is exact, would
@@ -144,9 +144,9 @@ SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
   std::vector<int> source;
   for (const int i : shape.extreme) source.push_back(corners[i]);
   const double on_facet = kOnFacetTolerances * tolerance;
-  ConnectToSurface(mesh, patch, source, on_facet, &piece.polytope);
+  ConnectToSurface(patch, source, on_facet, mesh, &piece.polytope);
   if (patch.size() > 1 && !closed) {
-    piece.lost = FindLost(mesh, patch, on_facet, piece.polytope);
+    piece.lost = FindLost(*mesh, patch, on_facet, piece.polytope);
   }
   return piece;
 }

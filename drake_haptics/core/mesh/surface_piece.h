@@ -17,7 +17,7 @@ struct SurfacePiece {
 
 /// @param patch triangles, ascending, one or more.
 /// @param tolerance surface tolerance of the mesh, m.
-SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
-                              std::span<const int> patch, double tolerance);
+SurfacePiece MakeSurfacePiece(std::span<const int> patch, double tolerance,
+                              MeshTopology* mesh);
 
 }  // namespace drake_haptics
