@@ -119,7 +119,7 @@ def _check_extent(
         return
     unit = guess_unit(extent / scale, _SMALLEST_EXTENT_M, _LARGEST_TOOL_M)
     hint = (
-        ""
+        f". {name}_scale={0.1 * scale / extent:.2g} makes it 100 mm long"
         if unit is None
         else f". If {path.name} is in {unit}: {name}_scale={METERS_PER_UNIT[unit]:g}"
     )

@@ -241,8 +241,8 @@ def write_json(data: dict[str, Any], file: str | None) -> None:
 
 
 # A scale in a message of the library, as an argument or a key of a scene.
-_SCALE_ARGUMENT = re.compile(r"(tool|environment)_scale=([\d.e-]+)")
-_SCALE_KEY = re.compile(r"(tool|environment)(?:\[0\])?\.scale: ([\d.e-]+)")
+_SCALE_ARGUMENT = re.compile(r"(tool|environment)_scale=([\d.e+-]+)")
+_SCALE_KEY = re.compile(r"(tool|environment)(?:\[0\])?\.scale: ([\d.e+-]+)")
 
 
 def set_option(function: _Function) -> _Function:

@@ -1,5 +1,7 @@
 """A scene for two meshes of a user: it must simply run."""
 
+import re
+
 import numpy as np
 import pytest
 import trimesh
@@ -83,6 +85,16 @@ def test_a_tool_of_an_unlikely_size_is_refused(tmp_path, size):
     block = write(tmp_path, "block.stl", SHAPES["block"])
     with pytest.raises(SceneError, match=r"the tool tool.stl is .*m long, and must"):
         make_scene_for_meshes(tool, block)
+
+
+@pytest.mark.parametrize("size", [6000.0, 3.0, 1e-4, 1e-9])
+def test_the_scale_that_a_refusal_names_is_accepted(tmp_path, size):
+    tool = write(tmp_path, "tool.ply", trimesh.creation.box([size] * 3))
+    block = write(tmp_path, "block.stl", SHAPES["block"])
+    with pytest.raises(SceneError) as refusal:
+        make_scene_for_meshes(tool, block)
+    (scale,) = re.findall(r"tool_scale=([\d.e+-]+)", str(refusal.value))
+    make_scene_for_meshes(tool, block, tool_scale=float(scale))
 
 
 def test_a_tool_far_from_its_origin_is_held_as_if_it_were_not(tmp_path):
