@@ -42,8 +42,8 @@ class HandPath:
                 stays at its end.
 
         Raises:
-            ValueError: The times do not rise from 0, neighbors are turned by
-                120° or more, or a periodic path does not close.
+            ValueError: The times do not rise from 0, a pose is not finite, neighbors
+                are turned by 120° or more, or a periodic path does not close.
         """
         if len(times_s) != len(poses) or not len(poses):
             raise ValueError("a path needs a time for each of one or more poses")
@@ -52,7 +52,10 @@ class HandPath:
         rises = np.all(np.diff(times) >= np.finfo(float).eps)
         if times[0] != 0.0 or not rises or not np.isfinite(times[-1]):
             raise ValueError("times must rise from 0 s")
-        samples = _align_signs(np.array([pose_to_vector(X) for X in poses]))
+        samples = np.array([pose_to_vector(X) for X in poses])
+        if not np.isfinite(samples).all():
+            raise ValueError("the poses must be finite")
+        samples = _align_signs(samples)
         if periodic and len(poses) < 3:
             raise ValueError("a periodic path needs three waypoints or more")
         if periodic and not poses[0].IsNearlyEqualTo(poses[-1], 1e-6):

@@ -93,6 +93,8 @@ def test_it_never_goes_beyond_its_waypoints():
         ([0.0, np.nan], POSES[:2], False, "rise from 0"),
         ([0.0, np.inf], POSES[:2], False, "rise from 0"),
         ([0.0, 1e-300], POSES[:2], False, "rise from 0"),
+        ([0.0, 1.0], [POSES[0], pose(np.nan, 0, 0, 0, 0, 0)], False, "finite"),
+        ([0.0, 1.0], [POSES[0], pose(0, 0, np.inf, 0, 0, 0)], False, "finite"),
         ([0.0, 1.0], [POSES[0], pose(0, 0, 0, 130, 0, 0)], False, "waypoints 0 and 1"),
         ([0.0, 1.0, 2.0], POSES[:3], True, "end at the pose"),
         ([0.0, 1.0], [POSES[0], POSES[0]], True, "three waypoints"),
