@@ -21,8 +21,8 @@ class ReplayDevice(DeviceBackend):
 
     It stays at the start of the recording until the first command enables it; each
     further command advances it by a tick, so that a loop with the recorded rate sees
-    tick k at its tick k. After the last tick, or at the first gap of the log, it stops.
-    It shows no force, because a recorded hand does not yield.
+    tick k at its tick k. After the last tick, or at the first gap of the log, it stands
+    still. It shows no force, because a recorded hand does not yield.
 
     The readings are those of the recorded loop up to the round-off of converting to the
     base's frame and back. `drake_haptics.simulation.replay_log` replays bit for bit.
@@ -42,6 +42,7 @@ class ReplayDevice(DeviceBackend):
         X_WB = vector_to_pose(np.array(log.header.X_WB))
         self._to_base = FrameChange(pose_to_vector(X_WB.inverse()))
         self._tick = 0
+        self._has_ended = False
         self._gate = GateState.IDLE
         self._is_closed = False
 
@@ -58,7 +59,8 @@ class ReplayDevice(DeviceBackend):
     def read(self) -> DeviceReading:
         """Returns the recorded handle at the present tick."""
         tick = self._tick
-        motion = self._to_base.change_motion(self._X_WH[tick], self._V_WH[tick])
+        V_WH = np.zeros(6) if self._has_ended else self._V_WH[tick]
+        motion = self._to_base.change_motion(self._X_WH[tick], V_WH)
         return DeviceReading(
             sequence=tick,
             time_s=float(self._times_s[tick]),
@@ -74,7 +76,8 @@ class ReplayDevice(DeviceBackend):
         if self._is_closed:
             return
         if self._gate == GateState.ACTIVE:
-            self._tick = min(self._tick + 1, len(self._times_s) - 1)
+            self._has_ended = self._tick + 1 == len(self._times_s)
+            self._tick += not self._has_ended
         self._gate = GateState.ACTIVE
 
     def get_link_status(self) -> LinkStatus:

@@ -48,6 +48,19 @@ def test_it_stands_until_it_is_enabled_and_moves_by_a_tick_per_command():
     assert device.read().gate == GateState.IDLE
 
 
+def test_it_stands_still_after_its_last_tick():
+    log = make_log()
+    device = ReplayDevice(log)
+    for _ in range(5):
+        device.write(None)
+    assert np.linalg.norm(device.read().V_BH) > 0
+    last = device.read().X_BH
+    for _ in range(2):
+        device.write(None)
+        assert not device.read().V_BH.any()
+        np.testing.assert_array_equal(device.read().X_BH, last)
+
+
 def test_a_closed_one_stays_where_it_is():
     device = ReplayDevice(make_log())
     device.write(None)
