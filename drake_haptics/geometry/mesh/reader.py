@@ -126,9 +126,11 @@ def _read_with_trimesh(path: Path) -> RawMesh:
 
 
 def _plain_obj(path: Path) -> io.BytesIO:
-    """Returns an OBJ file as trimesh reads it: Unix line ends, no tabs, no mark."""
+    """Returns an OBJ file as trimesh reads it: Unix line ends, no tabs, no BOM."""
     data = path.read_bytes().removeprefix(codecs.BOM_UTF8)
-    return io.BytesIO(b"\n".join(data.splitlines()).replace(b"\t", b" "))
+    for other, plain in ((b"\r\n", b"\n"), (b"\r", b"\n"), (b"\t", b" ")):
+        data = data.replace(other, plain)
+    return io.BytesIO(data)
 
 
 @contextmanager
