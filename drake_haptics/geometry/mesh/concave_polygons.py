@@ -45,11 +45,10 @@ def triangulate_concave_polygons(
     is_folded = np.linalg.norm(a + b, axis=1) < FOLDED
     if not is_folded.any():
         return triangles
-    folded = pairs[is_folded]
     folds = edges.ends[edges.count == 2][edges.pair_opposed][is_folded]
     flat = pairs[is_folded | (np.linalg.norm(a - b, axis=1) < FOLDED)]
     face = connected_labels(len(triangles), flat)
-    face_of_fold = face[folded[:, 0]]
+    face_of_fold = face[pairs[is_folded, 0]]
     flat = flat[np.isin(face[flat[:, 0]], face_of_fold)]
     taken = _halfedges(triangles)
     keep = np.ones(len(triangles), dtype=bool)
@@ -61,10 +60,8 @@ def triangulate_concave_polygons(
             for fold in folds[face_of_fold == label]
         )
         for members in (whole, *about_folds):
-            # One that ends at a fold would stay folded there.
-            is_cut = (np.isin(folded, members).sum(axis=1) == 1).any()
-            if is_cut or not keep[members].all():
-                continue
+            if not keep[members].all():
+                continue  # some of them are replaced already
             found = _triangulate_outline(vertices, triangles[members])
             if found is None or not _fits(found, triangles[members], taken):
                 continue
