@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
+from drake_haptics.common.disk_cache import cache_folder
 from drake_haptics.common.errors import HapticsError
-from drake_haptics.geometry.decomposition.cache import cache_folder
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 # Types of arguments.

@@ -21,11 +21,6 @@ from drake_haptics.geometry.decomposition.approximate import (
     coacd_parameters,
     merge_patches,
 )
-from drake_haptics.geometry.decomposition.cache import (
-    cache_key,
-    load_cached,
-    store_cached,
-)
 from drake_haptics.geometry.decomposition.pieces import (
     ConvexHulls,
     MergedPatches,
@@ -34,7 +29,10 @@ from drake_haptics.geometry.decomposition.pieces import (
 )
 from drake_haptics.geometry.decomposition.report import DecompositionReport
 from drake_haptics.geometry.decomposition.storage import (
+    cache_key,
+    load_cached,
     read_decomposition,
+    store_cached,
     write_decomposition,
 )
 from drake_haptics.geometry.mesh.mesh import Mesh
@@ -129,7 +127,7 @@ def decompose(
         progress: Function that is called repeatedly with the share done, from 0 to 1.
             An exception that it raises ends the work and is passed on.
         cache: Whether to use and store results on disk; see
-            `drake_haptics.geometry.decomposition.cache`.
+            `drake_haptics.common.disk_cache`.
 
     Raises:
         HapticsError: `mesh` is not a `Mesh`, the method is unknown, or its error or its

@@ -1,18 +1,19 @@
-"""Stores decompositions in files with checksums, atomically."""
+"""Stores decompositions in files with checksums, and in the cache."""
 
 from __future__ import annotations
 
 import hashlib
 import io
 import json
-import os
-import uuid
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from drake_haptics import _core
+from drake_haptics.common.disk_cache import load_entry, replace_file, store_entry
 from drake_haptics.common.errors import DecompositionFileError
 from drake_haptics.geometry.decomposition.pieces import (
     ConvexHulls,
@@ -27,23 +28,46 @@ FORMAT_NAME = "drake_haptics decomposition"
 FORMAT_VERSION = 1
 
 
-def write_pieces(path: Path, key: str, pieces: PieceData) -> None:
-    """Writes an entry of the cache."""
-    facts, arrays = _pack_pieces(pieces)
-    write_archive(path, {"key": key, **facts}, arrays)
+def cache_key(mesh: Mesh, method: str, parameters: dict[str, Any]) -> str:
+    """Returns a hash of everything on which the pieces depend.
 
-
-def read_pieces(path: Path, key: str, mesh: Mesh) -> PieceData:
-    """Reads an entry of the cache.
-
-    Raises:
-        DecompositionFileError: The entry is damaged or has another key.
-        OSError: It cannot be opened.
+    It includes the compiled core, so that a changed core never finds pieces of another
+    one.
     """
-    facts, arrays = read_archive(path)
-    if facts.get("key") != key:
-        raise DecompositionFileError(f"{path}: is the cache entry of another mesh")
-    return _unpack_pieces(path, facts, arrays, mesh)
+    settings = [FORMAT_VERSION, _core_digest(), method, parameters]
+    sha = hashlib.sha256(json.dumps(settings, sort_keys=True).encode())
+    for array in (mesh.vertices, mesh.triangles, mesh.solid):
+        sha.update(f"{array.dtype} {array.shape}".encode())
+        sha.update(np.ascontiguousarray(array).tobytes())
+    return sha.hexdigest()
+
+
+@cache
+def _core_digest() -> str:
+    return hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()
+
+
+def load_cached(key: str, mesh: Mesh) -> PieceData | None:
+    """Returns the pieces in the cache under the key; None if there are no usable ones.
+
+    Args:
+        key: Key by `cache_key`.
+        mesh: Mesh of the pieces.
+    """
+
+    def read(path: Path) -> PieceData:
+        facts, arrays = read_archive(path)
+        if facts.get("key") != key:
+            raise DecompositionFileError(f"{path}: is the cache entry of another mesh")
+        return _unpack_pieces(path, facts, arrays, mesh)
+
+    return load_entry(key, read)
+
+
+def store_cached(key: str, pieces: PieceData) -> None:
+    """Stores pieces in the cache under the key, replacing an existing entry."""
+    facts, arrays = _pack_pieces(pieces)
+    store_entry(key, lambda path: write_archive(path, {"key": key, **facts}, arrays))
 
 
 def write_decomposition(path: Path, mesh: Mesh, method: str, pieces: PieceData) -> None:
@@ -151,10 +175,6 @@ def write_archive(
 ) -> None:
     """Writes facts (JSON data) and arrays to an .npz file, atomically.
 
-    The file is written to the same folder under another name, flushed to disk and
-    renamed, so that a reader sees the old file or the new one, even if this process is
-    killed or another one writes the same file.
-
     Raises:
         OSError: The file cannot be written.
     """
@@ -164,20 +184,7 @@ def write_archive(
     digest = np.frombuffer(_digest(entries), dtype=np.uint8)
     buffer = io.BytesIO()
     np.savez(buffer, digest=digest, **entries)  # type: ignore[arg-type]
-    if path.exists() and not path.is_file():
-        path.write_bytes(buffer.getbuffer())  # must not replace a device or a pipe
-        return
-    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
-    try:
-        with open(temporary, "xb") as stream:
-            stream.write(buffer.getbuffer())
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, path)
-    except OSError as error:  # name the file that the caller knows
-        raise OSError(error.errno, error.strerror, str(path)) from error
-    finally:
-        temporary.unlink(missing_ok=True)  # exists only after a failure
+    replace_file(path, buffer.getbuffer())
 
 
 def read_archive(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:

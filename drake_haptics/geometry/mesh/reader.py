@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import hashlib
 import io
 import logging
 import os
@@ -10,11 +11,14 @@ import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from drake_haptics.common.disk_cache import load_entry, replace_file, store_entry
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.common.one_line import count
@@ -94,13 +98,57 @@ def _read_npz(path: Path) -> RawMesh:
 
 
 def _read_with_trimesh(path: Path) -> RawMesh:
-    import trimesh  # takes half a second
+    """Reads a file by trimesh, or from the cache what it once read of these bytes.
 
+    The import of trimesh takes as long as the rest of a run's start.
+    """
     try:
-        path.name.encode()  # trimesh does so, too
+        path.name.encode()  # whoever prints the name does so, too
     except UnicodeEncodeError as error:
         shown = os.fsencode(path).decode(errors="backslashreplace")
         raise MeshError(f"{shown}: its name is not UTF-8: rename the file") from error
+    suffix = path.suffix.lower()
+    if suffix in (".gltf", ".glb"):  # may have their numbers in other files
+        return _parse(path, path)
+    data = path.read_bytes()
+    if suffix == ".obj":
+        data = _plain_obj(data)
+    sha = hashlib.sha256(f"{version('trimesh')} {suffix} ".encode())
+    for content in (Path(__file__).read_bytes(), data):
+        sha.update(content)
+    key = f"triangles-{sha.hexdigest()}"
+    raw = load_entry(key, _load_triangles)
+    if raw is None:
+        raw = _parse(path, io.BytesIO(data))
+        store_entry(key, partial(_store_triangles, raw))
+    return raw
+
+
+def _load_triangles(entry: Path) -> RawMesh:
+    with np.load(entry) as archive:
+        parts, unit = int(archive["parts"]), str(archive["unit"])
+        return RawMesh(archive["V"], archive["F"], parts, unit or None)
+
+
+def _store_triangles(raw: RawMesh, entry: Path) -> None:
+    buffer = io.BytesIO()
+    np.savez(
+        buffer, V=raw.vertices, F=raw.triangles, parts=raw.parts, unit=raw.unit or ""
+    )
+    replace_file(entry, buffer.getbuffer())
+
+
+def _plain_obj(data: bytes) -> bytes:
+    """Returns an OBJ file as trimesh reads it: Unix line ends, no tabs, no BOM."""
+    data = data.removeprefix(codecs.BOM_UTF8)
+    for other, plain in ((b"\r\n", b"\n"), (b"\r", b"\n"), (b"\t", b" ")):
+        data = data.replace(other, plain)
+    return data
+
+
+def _parse(path: Path, source: Path | io.BytesIO) -> RawMesh:
+    import trimesh
+
     formats = trimesh.available_formats()
     if path.suffix.lower().lstrip(".") not in formats:
         raise MeshError(
@@ -111,11 +159,7 @@ def _read_with_trimesh(path: Path) -> RawMesh:
         )
     try:
         with _silent_trimesh():
-            scene = trimesh.load_scene(
-                _plain_obj(path) if path.suffix.lower() == ".obj" else path,
-                file_type=path.suffix,
-                process=False,
-            )
+            scene = trimesh.load_scene(source, file_type=path.suffix, process=False)
     except Exception as error:  # trimesh's readers raise various errors
         raise MeshError(
             f"{path}: cannot be read as {path.suffix} "
@@ -123,14 +167,6 @@ def _read_with_trimesh(path: Path) -> RawMesh:
             f"its name says: export it again"
         ) from error
     return _merge_scene(path, scene)
-
-
-def _plain_obj(path: Path) -> io.BytesIO:
-    """Returns an OBJ file as trimesh reads it: Unix line ends, no tabs, no BOM."""
-    data = path.read_bytes().removeprefix(codecs.BOM_UTF8)
-    for other, plain in ((b"\r\n", b"\n"), (b"\r", b"\n"), (b"\t", b" ")):
-        data = data.replace(other, plain)
-    return io.BytesIO(data)
 
 
 @contextmanager

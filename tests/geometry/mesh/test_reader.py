@@ -2,6 +2,8 @@
 
 import logging
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -161,3 +163,56 @@ def test_a_scene_is_merged_where_its_parts_are_placed(tmp_path):
     assert mesh.report.solids == 3 and mesh.report.volume == pytest.approx(3)
     lows = sorted(component.bounds[0][0] for component in mesh.components)
     assert lows == [-3, 0, 5]
+
+
+def load_in_another_process(path):
+    """Returns the number of triangles, and whether trimesh was imported."""
+    program = (
+        "import sys\n"
+        "from drake_haptics.geometry import load_mesh\n"
+        "print(len(load_mesh(sys.argv[1]).triangles), 'trimesh' in sys.modules)\n"
+    )
+    command = [sys.executable, "-c", program, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    triangles, imported = done.stdout.split()
+    return int(triangles), imported == "True"
+
+
+@pytest.mark.parametrize("suffix", ["stl", "ply", "obj", "off"])
+def test_the_second_time_trimesh_is_not_needed(tmp_path, monkeypatch, suffix):
+    monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / f"a.{suffix}"
+    trimesh.creation.box((1.0, 2.0, 3.0)).export(path)
+    first = load_mesh(path)
+    assert load_in_another_process(path) == (12, False)
+    second = load_mesh(path)
+    assert first.report == second.report
+    np.testing.assert_array_equal(first.vertices, second.vertices)
+    np.testing.assert_array_equal(first.triangles, second.triangles)
+    trimesh.creation.icosphere(subdivisions=1).export(path)
+    assert load_in_another_process(path) == (80, True)
+
+
+def test_a_damaged_entry_of_the_cache_is_read_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / "a.stl"
+    trimesh.creation.box().export(path)
+    load_mesh(path)
+    (entry,) = (tmp_path / "cache").iterdir()
+    whole = entry.read_bytes()
+    moved = whole.replace(np.float64(0.5).tobytes(), np.float64(0.25).tobytes(), 1)
+    assert moved != whole
+    for content in (b"", b"!" * 99, whole[: len(whole) // 2], moved):
+        entry.write_bytes(content)
+        assert load_in_another_process(path) == (12, True)
+        assert entry.read_bytes() == whole
+
+
+def test_the_buffers_of_a_gltf_file_are_read_each_time(tmp_path):
+    for size in (1.0, 2.0):
+        model = trimesh.Scene(trimesh.creation.box((size, size, size)))
+        for name, data in model.export(file_type="gltf").items():
+            if name.endswith(".bin") or size == 1.0:
+                (tmp_path / name).write_bytes(data)
+        side = load_mesh(tmp_path / "model.gltf").report.extent[0]
+        assert side == pytest.approx(size)

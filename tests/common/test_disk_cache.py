@@ -12,14 +12,12 @@ import pytest
 from large_cache_entry import MESH, PIECES
 from mesh_samples import box, joined, l_prism
 
-from drake_haptics.geometry.decomposition import cache as decomposition_cache
+from drake_haptics.common import disk_cache
+from drake_haptics.common.disk_cache import cache_folder
 from drake_haptics.geometry.decomposition import decompose as decomposition
-from drake_haptics.geometry.decomposition.cache import (
-    cache_folder,
-    cache_key,
-    load_cached,
-)
+from drake_haptics.geometry.decomposition import storage
 from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.decomposition.storage import cache_key, load_cached
 from drake_haptics.geometry.mesh.mesh import Mesh
 
 
@@ -79,7 +77,7 @@ def test_the_key_depends_on_everything_the_pieces_depend_on(mesh, monkeypatch):
         cache_key(mesh, "hull", {}),
         cache_key(mesh, "surface", {"concavity": 0.1}),
     ]
-    monkeypatch.setattr(decomposition_cache, "_core_digest", lambda: "another core")
+    monkeypatch.setattr(storage, "_core_digest", lambda: "another core")
     keys.append(cache_key(mesh, "surface", {}))
     assert len(set(keys)) == len(keys)
     monkeypatch.undo()
@@ -112,7 +110,7 @@ def test_a_folder_that_cannot_be_written_does_not_stop_the_work(
     (tmp_path / "file").touch()
     monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path / "file" / "cache"))
     assert decompose(mesh).report.pieces > 1
-    assert "no decomposition can be kept in" in caplog.text
+    assert "no mesh can be kept in" in caplog.text
 
 
 def test_old_entries_and_abandoned_files_go(folder, mesh, monkeypatch):
@@ -129,20 +127,20 @@ def test_old_entries_and_abandoned_files_go(folder, mesh, monkeypatch):
     for age, path in enumerate(entries):
         os.utime(path, (time.time() - 60 * age,) * 2)
     total = sum(path.stat().st_size for path in entries)
-    monkeypatch.setattr(decomposition_cache, "MAX_CACHE_BYTES", total)
+    monkeypatch.setattr(disk_cache, "MAX_CACHE_BYTES", total)
     decompose(Mesh.from_arrays(*box(at=(1, 2, 3))))  # one more has no room
     kept = set(folder.glob("*.npz"))
     assert entries[0] in kept and entries[-1] not in kept
     assert sum(path.stat().st_size for path in kept) <= total
 
 
-SUPPORT = str(Path(__file__).parents[2] / "support")
+SUPPORT = str(Path(__file__).parents[1] / "support")
 WRITER = textwrap.dedent(
     """
     import sys
     sys.path.insert(0, sys.argv[2])
     from large_cache_entry import MESH, PIECES
-    from drake_haptics.geometry.decomposition.cache import load_cached, store_cached
+    from drake_haptics.geometry.decomposition.storage import load_cached, store_cached
 
     print("ready", flush=True)
     for _ in range(int(sys.argv[1])):
