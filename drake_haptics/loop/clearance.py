@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.math import RigidTransform
+from pydrake.solvers import ClpSolver, LinearConstraint, MathematicalProgram
 
 from drake_haptics import _core
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
@@ -155,20 +156,26 @@ def _find_room(
     if len(d) < 2 or _can_leave(n_W, d, size_m, kept_m):
         return stay, None
     distance_m = float(kept_m.max())
-    from scipy.optimize import linprog
-
     # Solved for (x, -x, s) in units of the distance, so that all numbers are near 1.
-    solved = linprog(
-        [_WAY] * 6 + [-1.0],
-        A_ub=np.column_stack([-n_W, n_W, kept_m / distance_m]),
-        b_ub=d / distance_m,
-        bounds=[(0.0, size_m / distance_m)] * 6 + [(None, 1.0)],
+    program = MathematicalProgram()
+    unknowns = program.NewContinuousVariables(7)
+    program.AddLinearCost([_WAY] * 6 + [-1.0], unknowns)
+    apart = LinearConstraint(
+        np.column_stack([-n_W, n_W, kept_m / distance_m]),
+        np.full(len(d), -np.inf),
+        d / distance_m,
     )
-    x_W = distance_m * (solved.x[:3] - solved.x[3:6])
-    share = float(solved.x[6])
+    rows = program.AddConstraint(apart, unknowns)
+    program.AddBoundingBoxConstraint(
+        [0.0] * 6 + [-np.inf], [size_m / distance_m] * 6 + [1.0], unknowns
+    )
+    solved = ClpSolver().Solve(program)
+    x = solved.GetSolution(unknowns)
+    x_W = distance_m * (x[:3] - x[3:6])
+    share = float(x[6])
     if share >= 1.0 - _ROUNDING:
         return x_W, None
-    holding = solved.ineqlin.marginals < 0
+    holding = solved.GetDualSolution(rows) < 0.0
     objects = tuple(sorted(set(contacts.object_index[holding].tolist())))
     return x_W, Clearance(share, objects)
 
