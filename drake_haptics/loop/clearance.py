@@ -76,7 +76,6 @@ def find_clearance(
     pressed: list[NDArray[np.float64]] = []
 
     def ask(q_WT: NDArray[np.float64]) -> tuple[NDArray[np.float64], Clearance | None]:
-        tracker.reset()
         contacts = tracker.query(q_WT)
         x_W, found = _find_room(contacts, size_m, kept[contacts.object_index])
         if contacts.least_distance > 0.0:
