@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from functools import reduce
 from operator import add
@@ -21,7 +22,9 @@ from drake_haptics.systems.framework.differentiable_system import (
 )
 
 
-@TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
+@TemplateSystem.define(
+    "AppliedWrenches_", T_list=(float, AutoDiffXd), scope=sys.modules[__name__]
+)
 def AppliedWrenches_(T: type) -> type:
     """Defines `AppliedWrenches` for one scalar type."""
     # Looked up once, because the lookup takes longer than all the rest.

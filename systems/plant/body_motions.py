@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -74,7 +75,9 @@ class BodyMotions(Diagram):
         builder.BuildInto(self)
 
 
-@TemplateSystem.define("_BodyMotionsVector_", T_list=(float, AutoDiffXd))
+@TemplateSystem.define(
+    "_BodyMotionsVector_", T_list=(float, AutoDiffXd), scope=sys.modules[__name__]
+)
 def _BodyMotionsVector_(T: type) -> type:
     class Impl(LeafSystem_[T]):
         """All outputs of a `BodyMotions`, concatenated."""
