@@ -46,12 +46,21 @@ def register_pieces(
         plant.RegisterCollisionGeometry(body, X_BP, shape, name, surface)
 
 
-def to_drake_mesh(part: Decomposition) -> Mesh:
-    """Returns the decomposed mesh as an in-memory `Mesh` of Drake."""
-    lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in part.mesh.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in (part.mesh.triangles + 1).tolist()]
+def register_mesh(
+    plant: MultibodyPlant,
+    body: RigidBody,
+    X_BM: RigidTransform,
+    decomposition: Decomposition,
+    surface: ProximityProperties,
+) -> None:
+    """Adds the decomposed mesh to a body of a plant, as an in-memory `Mesh`."""
+    mesh = decomposition.mesh
+    lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in mesh.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
     file = MemoryFile("\n".join(lines) + "\n", ".obj", "mesh")
-    return Mesh(mesh_data=InMemoryMesh(mesh_file=file))
+    shape = Mesh(mesh_data=InMemoryMesh(mesh_file=file))
+    name = f"mesh_{len(plant.GetCollisionGeometriesForBody(body))}"
+    plant.RegisterCollisionGeometry(body, X_BM, shape, name, surface)
 
 
 def make_surface(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydrake.geometry import (
@@ -40,13 +40,11 @@ from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
     quiet_streams,
+    register_mesh,
     register_pieces,
-    to_drake_mesh,
 )
 from drake_haptics.evaluation.measuring.timing import typical
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-
-AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
 
 # Inertia of a tool whose motion is given, which does not matter.
 _MASS_KG, _RADIUS_M = 0.1, 0.1
@@ -54,7 +52,17 @@ _MASS_KG, _RADIUS_M = 0.1, 0.1
 _MODULUS_PA = 1e6
 # For round shapes only, m; pieces and meshes are exact.
 _RESOLUTION_M = 2e-3
-_AddTool = Callable[[MultibodyPlant, RigidBody, ProximityProperties], None]
+Register = Callable[
+    [MultibodyPlant, RigidBody, RigidTransform, Decomposition, ProximityProperties],
+    None,
+]
+
+
+class Shapes(NamedTuple):
+    """Geometry of a body: what registers its shapes, and their surface."""
+
+    register: Register
+    surface: ProximityProperties
 
 
 @dataclass(frozen=True)
@@ -106,14 +114,16 @@ class DrakePlant:
         return typical(seconds)
 
 
-def make_plant(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakePlant:
+def make_plant(
+    problem: PeerProblem, contact_model: str, tool: Shapes, objects: Shapes
+) -> DrakePlant:
     """Builds a plant with a tool and objects.
 
     Args:
+        problem: Problem with the shapes, and the poses of the objects.
         contact_model: Name of the contact model, see `MultibodyPlantConfig`.
-        X_WO: (m, 7) poses of the objects.
-        add: Function that adds geometry to a body; it takes the plant, the body, the
-            object's index or -1 for the tool, and the geometry's pose in the body.
+        tool: Geometry of the tool.
+        objects: Geometry of the objects.
     """
     builder = DiagramBuilder()
     config = MultibodyPlantConfig(time_step=0.0, contact_model=contact_model)
@@ -121,36 +131,29 @@ def make_plant(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakeP
     # Qhull warns of flat pieces.
     with quiet_streams(2):
         plant, scene_graph = AddMultibodyPlant(config, builder)
-        tool = plant.AddRigidBody("tool", inertia)
-        add(plant, tool, -1, RigidTransform())
-        for i, pose in enumerate(X_WO):
-            add(plant, plant.world_body(), i, vector_to_pose(pose))
+        body = plant.AddRigidBody("tool", inertia)
+        tool.register(plant, body, RigidTransform(), problem.tool, tool.surface)
+        for part, pose in zip(problem.objects, problem.part.X_WO, strict=True):
+            X_WO, world = vector_to_pose(pose), plant.world_body()
+            objects.register(plant, world, X_WO, part, objects.surface)
         plant.Finalize()
         context = builder.Build().CreateDefaultContext()
-    return DrakePlant(plant, scene_graph, tool, context)
+    return DrakePlant(plant, scene_graph, body, context)
 
 
 def answer_on_pieces(problem: PeerProblem) -> PeerAnswers:
     """Returns the plant's forces on the same pieces."""
-    return _read_forces(problem, _add_pieces(problem))
+    return _read_forces(problem, register_pieces)
 
 
 def answer_on_meshes(problem: PeerProblem) -> PeerAnswers:
     """Returns the plant's forces on `Mesh` shapes, of which it uses the hulls."""
-
-    def add(
-        plant: MultibodyPlant, body: RigidBody, which: int, X_BM: RigidTransform
-    ) -> None:
-        part, surface = _find_part(problem, which)
-        shape = to_drake_mesh(part)
-        plant.RegisterCollisionGeometry(body, X_BM, shape, f"mesh_{which}", surface)
-
-    return _read_forces(problem, add)
+    return _read_forces(problem, register_mesh)
 
 
 def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
     """Answers by signed distances of the same pieces within the tolerance."""
-    drake = make_plant("point", problem.part.X_WO, _add_pieces(problem))
+    drake = _make_point_plant(problem, register_pieces)
     owners = _find_owners(problem, drake)
     start = [0]
     rows: list[np.ndarray] = []
@@ -173,30 +176,22 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
     return apply_law(problem, found)
 
 
-def _find_part(
-    problem: PeerProblem, which: int
-) -> tuple[Decomposition, ProximityProperties]:
-    """Returns the shape of the tool (-1) or an object, and its contact material."""
+def _make_point_plant(problem: PeerProblem, register: Register) -> DrakePlant:
+    """Builds a plant whose point contact has the scene's gains.
+
+    Raises:
+        ValueError: The tool would need a different surface for each object.
+    """
     stiffness, damping = problem.part.stiffness_N_per_m, problem.part.damping_Ns_per_m
     if np.ptp(stiffness) > 0.0 or np.ptp(damping) > 0.0:
-        # The tool would need a different surface for each object.
         raise ValueError("the objects differ in stiffness or damping")
-    surface = make_surface(float(stiffness[0]), float(damping[0]))
-    return problem.tool if which < 0 else problem.objects[which], surface
+    springs = Shapes(register, make_surface(float(stiffness[0]), float(damping[0])))
+    return make_plant(problem, "point", springs, springs)
 
 
-def _add_pieces(problem: PeerProblem) -> AddGeometry:
-    def add(
-        plant: MultibodyPlant, body: RigidBody, which: int, X_BP: RigidTransform
-    ) -> None:
-        register_pieces(plant, body, X_BP, *_find_part(problem, which))
-
-    return add
-
-
-def _read_forces(problem: PeerProblem, add: AddGeometry) -> PeerAnswers:
+def _read_forces(problem: PeerProblem, register: Register) -> PeerAnswers:
     """Sums the forces of the plant's point contacts at the tool's origin."""
-    drake = make_plant("point", problem.part.X_WO, add)
+    drake = _make_point_plant(problem, register)
     motion, tool = problem.motion, drake.tool.index()
     F_To_W = np.zeros((len(motion), 6))
     distance = np.full(len(motion), np.inf)
@@ -251,24 +246,15 @@ def _to_row(
 
 def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
     """Answers with a compliant `Mesh` as the tool, of which Drake fills the hull."""
-
-    def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
-        shape = to_drake_mesh(problem.tool)
-        plant.RegisterCollisionGeometry(body, RigidTransform(), shape, "tool", soft)
-
-    return _answer(problem, add)
+    return _answer(problem, register_mesh)
 
 
 def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
     """Answers with separately compliant pieces of the tool."""
-
-    def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
-        register_pieces(plant, body, RigidTransform(), problem.tool, soft)
-
-    return _answer(problem, add)
+    return _answer(problem, register_pieces)
 
 
-def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
+def _answer(problem: PeerProblem, register_tool: Register) -> PeerAnswers:
     """Returns the plant's hydroelastic forces, without distances.
 
     No modulus corresponds to the scene's stiffness, so it is fitted to the reference's
@@ -278,16 +264,12 @@ def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
     AddRigidHydroelasticProperties(_RESOLUTION_M, rigid)
     AddCompliantHydroelasticProperties(_RESOLUTION_M, _MODULUS_PA, soft)
 
-    def add(
-        plant: MultibodyPlant, body: RigidBody, which: int, X_BM: RigidTransform
-    ) -> None:
-        if which < 0:
-            add_tool(plant, body, soft)
-        else:
-            shape = to_drake_mesh(problem.objects[which])
-            plant.RegisterCollisionGeometry(body, X_BM, shape, f"mesh_{which}", rigid)
-
-    drake = make_plant("hydroelastic", problem.part.X_WO, add)
+    drake = make_plant(
+        problem,
+        "hydroelastic",
+        Shapes(register_tool, soft),
+        Shapes(register_mesh, rigid),
+    )
     motion = problem.motion
     own = set(drake.plant.GetCollisionGeometriesForBody(drake.tool))
     F_To_W = np.zeros((len(motion), 6))

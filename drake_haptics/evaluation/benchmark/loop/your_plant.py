@@ -7,12 +7,8 @@ from dataclasses import replace
 
 from pydrake.geometry import ProximityProperties
 from pydrake.math import RigidTransform
-from pydrake.multibody.plant import (
-    AddMultibodyPlant,
-    MultibodyPlant,
-    MultibodyPlantConfig,
-)
-from pydrake.multibody.tree import RigidBody, SpatialInertia
+from pydrake.multibody.plant import AddMultibodyPlant, MultibodyPlantConfig
+from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
@@ -22,8 +18,7 @@ from drake_haptics.evaluation.benchmark.loop.simulated_ticks import (
     observe_ticks,
 )
 from drake_haptics.evaluation.benchmark.loop.this_package import make_recorded_device
-from drake_haptics.evaluation.measuring.pieces import quiet_streams, to_drake_mesh
-from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.evaluation.measuring.pieces import quiet_streams, register_mesh
 from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
 from drake_haptics.scene.validation import SceneWarning
 
@@ -45,8 +40,17 @@ class PlantLoop(SimulatedLoop):
             )
             self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
             tool = self._plant.AddRigidBody("tool", problem.M_TTo_T)
-            _add_shape(self._plant, tool, problem.tool)
-            _add_objects(self._plant, problem)
+            surface = ProximityProperties()
+            register_mesh(self._plant, tool, RigidTransform(), problem.tool, surface)
+            for item, part, X_WO in zip(
+                problem.scene.environment, problem.objects, problem.X_WO, strict=True
+            ):
+                body = self._plant.AddRigidBody(
+                    item.name, SpatialInertia.SolidSphereWithMass(1.0, 1.0)
+                )
+                world = self._plant.world_frame()
+                self._plant.WeldFrames(world, body.body_frame(), X_WO)
+                register_mesh(self._plant, body, RigidTransform(), part, surface)
             self._plant.Finalize()
         with warnings.catch_warnings():
             # It warns that the explicit step may be unstable for the coupling's
@@ -84,25 +88,3 @@ class PlantLoop(SimulatedLoop):
         )
         self._plant.SetPositions(context, self._problem.X_WG[0])
         return simulator
-
-
-def _add_objects(plant: MultibodyPlant, problem: LoopProblem) -> None:
-    items = zip(problem.scene.environment, problem.objects, problem.X_WO, strict=True)
-    for item, part, X_WO in items:
-        body = plant.AddRigidBody(
-            item.name, SpatialInertia.SolidSphereWithMass(1.0, 1.0)
-        )
-        plant.WeldFrames(plant.world_frame(), body.body_frame(), X_WO)
-        _add_shape(plant, body, part)
-
-
-def _add_shape(
-    plant: MultibodyPlant, body: RigidBody, decomposition: Decomposition
-) -> None:
-    plant.RegisterCollisionGeometry(
-        body,
-        RigidTransform(),
-        to_drake_mesh(decomposition),
-        body.name(),
-        ProximityProperties(),
-    )
