@@ -13,6 +13,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
+from itertools import accumulate
 from pathlib import Path
 from typing import BinaryIO
 
@@ -189,15 +190,11 @@ CLOCK_QUANTITIES = ("clock_s", "query_s", "device_time_s")
 DEVICE_QUANTITIES = ("sequence", "buttons", "gate", "fault")
 
 
-def _find_slices() -> dict[str, slice]:
-    ends = np.cumsum([len(names) for names in REALS.values()])
-    return {
-        name: slice(int(end) - len(REALS[name]), int(end))
-        for name, end in zip(REALS, ends, strict=True)
-    }
-
-
-SLICES = _find_slices()
+_ENDS = accumulate(map(len, REALS.values()))
+SLICES = {
+    name: slice(end - len(numbers), end)
+    for (name, numbers), end in zip(REALS.items(), _ENDS, strict=True)
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,6 +330,8 @@ def parse_block_header(data: bytes) -> BlockHeader | None:
 
 def unpack_block(header: BlockHeader, payload: bytes) -> TickRows | None:
     """Returns the ticks of a block; None if the payload is damaged."""
+    if header.ticks == 0:
+        return join_rows([])
     if zlib.crc32(payload) != header.payload_crc:
         return None
     n = header.ticks

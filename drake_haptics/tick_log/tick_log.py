@@ -16,7 +16,6 @@ from drake_haptics.tick_log.log_format import (
     FILE_MAGIC,
     MAGIC_START,
     QUATERNION_TOLERANCE,
-    BlockHeader,
     TickLogError,
     TickLogHeader,
     TickRows,
@@ -27,68 +26,6 @@ from drake_haptics.tick_log.log_format import (
 )
 
 _SEARCHED_BYTES = 1 << 20
-
-
-@dataclass(frozen=True)
-class Damage:
-    """Bytes of a log that are not a block, or not the next one.
-
-    Attributes:
-        offset_bytes: Offset of the first byte in the file.
-    """
-
-    offset_bytes: int
-
-
-@dataclass(frozen=True)
-class EndMark:
-    """The end of a complete log.
-
-    Attributes:
-        ticks: Number of ticks of the whole log.
-    """
-
-    ticks: int
-
-
-def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
-    """Yields the content of a log, from the stream's position to its end.
-
-    A damaged block yields only the damage; the scan continues at the next valid one.
-    Ticks increase from block to block; a repeated tick counts as damage. The head of
-    another log ends this one. At most the largest block is read at once.
-
-    Args:
-        stream: The seekable file, after its header.
-    """
-    size = os.fstat(stream.fileno()).st_size
-    position, next_tick = stream.tell(), 0
-    while position < size:
-        stream.seek(position)
-        head = stream.read(BLOCK_HEADER_BYTES)
-        if head.startswith(FILE_MAGIC):
-            return
-        header = parse_block_header(head)
-        if header is not None and header.first_tick >= next_tick:
-            if header.ticks == 0:
-                yield EndMark(header.first_tick)
-                return
-            rows = _read_rows(stream, header)
-            if rows is not None:
-                yield rows
-                next_tick = header.first_tick + header.ticks
-                position += BLOCK_HEADER_BYTES + header.payload_bytes
-                continue
-        yield Damage(position)
-        position = _find_header(stream, position + 1, size)
-
-
-def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
-    """Returns the ticks of a block whose payload is next; None if damaged."""
-    payload = stream.read(header.payload_bytes)
-    if len(payload) < header.payload_bytes:
-        return None
-    return unpack_block(header, payload)
 
 
 def _find_header(stream: BinaryIO, start: int, size: int) -> int:
@@ -205,35 +142,47 @@ class TickLogReader:
         with open(self._path, "rb") as stream:
             self.header = read_header(stream, str(self._path))
             self._first_block = stream.tell()
-            self._size_bytes = os.fstat(stream.fileno()).st_size
 
     def iterate_blocks(
         self, progress: Callable[[str, float], None] | None = None
     ) -> Iterator[TickRows]:
         """Yields the ticks of every valid block, in order.
 
+        A damaged block is left out; reading continues at the next valid one. Ticks
+        increase from block to block; a repeated tick counts as damage. The head of
+        another log ends this one. At most the largest block is read at once.
+
         After the last one, `gaps` and `damaged_blocks` are complete.
         """
         self.gaps, self.damaged_blocks = [], 0
         next_tick, next_share = 0, 0.0
         with open(self._path, "rb") as stream:
-            stream.seek(self._first_block)
-            for item in scan_blocks(stream):
-                if isinstance(item, Damage):
+            size, position = os.fstat(stream.fileno()).st_size, self._first_block
+            while position < size:
+                stream.seek(position)
+                head = stream.read(BLOCK_HEADER_BYTES)
+                if head.startswith(FILE_MAGIC):
+                    break
+                header, rows = parse_block_header(head), None
+                if header is not None and header.first_tick >= next_tick:
+                    rows = unpack_block(header, stream.read(header.payload_bytes))
+                if header is None or rows is None:
                     self.damaged_blocks += 1
+                    position = _find_header(stream, position + 1, size)
                     continue
-                first = item.ticks if isinstance(item, EndMark) else int(item.ticks[0])
-                if first > next_tick:
-                    self.gaps.append(Gap(next_tick, first - next_tick))
-                if isinstance(item, EndMark):
+                if header.first_tick > next_tick:
+                    missing = header.first_tick - next_tick
+                    self.gaps.append(Gap(next_tick, missing))
+                if header.ticks == 0:
                     return
+                position += BLOCK_HEADER_BYTES + header.payload_bytes
                 # A log that is still being written grows meanwhile.
-                share = min(1.0, stream.tell() / self._size_bytes)
+                share = min(1.0, position / size)
                 if progress is not None and share >= next_share:
                     progress("Reading", share)
                     next_share = share + _REPORTED_SHARE
-                yield item
-                next_tick = first + len(item)
+                yield rows
+                next_tick = header.first_tick + header.ticks
         self.gaps.append(Gap(next_tick, None))
 
 
