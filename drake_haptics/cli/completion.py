@@ -33,13 +33,6 @@ def complete_scene(
     ]
 
 
-def complete_file(
-    _: click.Context, __: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
-    """Completes files."""
-    return [CompletionItem(incomplete, type="file")]
-
-
 def complete_address(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from drake_haptics.cli.command_help import CommandWithExamples
-from drake_haptics.cli.completion import complete_address, complete_file, complete_scene
+from drake_haptics.cli.completion import complete_address, complete_scene
 from drake_haptics.cli.options import (
     FiniteRange,
     file_option,
@@ -25,13 +25,13 @@ _EXPLAINED_S = 2.0
 @click.option(
     "--tool",
     metavar="MESH",
-    shell_complete=complete_file,
+    type=click.Path(readable=False),
     help="Instead of SCENE: mesh file of the tool.",
 )
 @click.option(
     "--environment",
     metavar="MESH",
-    shell_complete=complete_file,
+    type=click.Path(readable=False),
     help="Instead of SCENE: mesh file of the environment.",
 )
 @unit_option("both mesh files")
