@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import click
@@ -22,8 +23,9 @@ from drake_haptics.cli.options import (
     set_values,
     write_json,
 )
-from drake_haptics.cli.run_session import PageOptions, run_session
+from drake_haptics.cli.run_session import run_session
 from drake_haptics.cli.status_line import describe_fault, make_summary
+from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.scene_file import write_scene
@@ -140,7 +142,14 @@ def run_scene(
         views = SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST
         with naming("--port"):
             listener = open_page_port(port)
-        page = PageOptions(listener, name, locked, views)
+        page = partial(
+            CockpitRun,
+            listener=listener,
+            name=name,
+            device=device,
+            locked=locked,
+            views=views,
+        )
     meshcat = None if headless and record is None else start_meshcat()
     # Includes the report, which a second Ctrl-C must not lose.
     with lasting_interrupt() as check_interrupt:
@@ -149,7 +158,7 @@ def run_scene(
             scene,
             device=device,
             meshcat=meshcat,
-            page=page,
+            open_page=page,
             prepare=lambda haptic, url: _prepare(
                 console, haptic, meshcat, url, port, pieces, record
             ),

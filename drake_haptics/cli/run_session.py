@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import select
-import socket
 import sys
 import warnings
 from collections.abc import Callable
@@ -41,7 +40,6 @@ from drake_haptics.simulation.device_monitor import DeviceWatch
 from drake_haptics.simulation.profiling import CallbackTimer, Part, explain_tick
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 # Enough for what a person may have typed.
@@ -131,30 +129,13 @@ class Session:
     error: RunError | None
 
 
-@dataclass(frozen=True)
-class PageOptions:
-    """The page of a run.
-
-    Attributes:
-        listener: Socket that listens on its port.
-        name: Name of the scene.
-        locked: Reason why nothing may be changed on it; empty if changes are allowed.
-        views: Names of `PICTURE_VIEWS` that it shows at first.
-    """
-
-    listener: socket.socket
-    name: str
-    locked: str = ""
-    views: frozenset[str] = SHOWN_AT_FIRST
-
-
 def run_session(
     console: Console,
     scene: Scene,
     *,
     device: str | None,
     meshcat: Meshcat | None,
-    page: PageOptions | None,
+    open_page: Callable[[Scene, Meshcat], CockpitRun] | None,
     prepare: Callable[[HapticDiagram, str | None], None],
     duration_s: float | None,
     energy: bool,
@@ -172,7 +153,8 @@ def run_session(
         scene: The scene to run.
         device: Address of the device; None for the scene's simulated one.
         meshcat: Meshcat to draw in; None for no picture.
-        page: Page that shows and controls the run, in real time; None for no page.
+        open_page: Opens the page that shows and controls the run, in real time; None
+            for no page.
         prepare: Called with the diagram before it runs, and the page's address.
         duration_s: Simulated time, s; None runs until Ctrl-C.
         energy: Whether to account for energy, if the device is simulated.
@@ -187,17 +169,8 @@ def run_session(
             recorder = stack.enter_context(TickRecorder(log, make_log_header(scene)))
         # A device is closed at zero force, whatever happens.
         cockpit = backend = None
-        if page is not None and meshcat is not None:
-            cockpit = CockpitRun(
-                scene,
-                meshcat,
-                page.listener,
-                name=page.name,
-                device=device,
-                locked=page.locked,
-                views=page.views,
-            )
-            stack.enter_context(closing(cockpit))
+        if open_page is not None and meshcat is not None:
+            cockpit = stack.enter_context(closing(open_page(scene, meshcat)))
             backend = cockpit.backend
         elif device is not None:
             try:

@@ -73,7 +73,7 @@ def test_a_run_ends_though_its_interrupt_was_swallowed(monkeypatch, call):
             load_scene(find_scene("sphere_pen")),
             device="here",
             meshcat=None,
-            page=None,
+            open_page=None,
             prepare=lambda *_: None,
             duration_s=1.0,
             energy=False,
