@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 from urllib.parse import urlsplit
@@ -77,6 +77,16 @@ def show_table(table: Table, *, folds: bool = False) -> RichTable:
         )
     for row in table.rows:
         shown.add_row(*row)
+    return shown
+
+
+def show_facts(facts: Iterable[tuple[str, str]]) -> RichTable:
+    """Returns a table of facts, each after its name."""
+    shown = RichTable(box=None, show_header=False, pad_edge=False)
+    shown.add_column(style="dim")
+    shown.add_column()
+    for fact in facts:
+        shown.add_row(*fact)
     return shown
 
 

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from drake_haptics.cli.command_help import CommandWithExamples, LazyGroup
 from drake_haptics.cli.completion import complete_scene
-from drake_haptics.cli.console import make_console, progress_bar
+from drake_haptics.cli.console import make_console, progress_bar, show_facts
 from drake_haptics.cli.endings import ExitCode
 from drake_haptics.cli.options import (
     file_option,
@@ -114,33 +114,30 @@ def info(file: Path, json_file: str | None) -> None:
 def _print_summary(file: Path, summary: LogSummary) -> None:
     console = make_console()
     header, ticks = summary.header, summary.ticks
-    table = Table(box=None, show_header=False, pad_edge=False)
-    table.add_column(style="dim")
-    table.add_column()
     duration_s = ticks * header.period_s
-    table.add_row("recorded by", f"drake_haptics {header.program_version}")
-    table.add_row("device", "simulated" if summary.is_simulated else "not simulated")
-    table.add_row("ticks", f"{ticks}, {duration_s:.3f} s at {1 / header.period_s:g} Hz")
-    table.add_row(
-        "longest tick", f"{1e3 * summary.longest_wait_s:.2f} ms of elapsed time"
-    )
     size = f"{summary.bytes / 1e6:.2f} MB"
     if ticks:
         size += f", {60e-6 * summary.bytes / duration_s:.1f} MB per minute"
-    table.add_row("file", size)
-    table.add_row(
-        "largest",
-        f"force {summary.max_force_N:.2f} N, torque"
-        f" {1e3 * summary.max_torque_Nm:.0f} mN·m, penetration"
-        f" {depth(summary.max_penetration_m)},"
-        f" {count(summary.max_contacts, 'contact')}",
-    )
-    table.add_row("device limit", f"{count(summary.limited_ticks, 'tick')} at it")
+    facts = [
+        ("recorded by", f"drake_haptics {header.program_version}"),
+        ("device", "simulated" if summary.is_simulated else "not simulated"),
+        ("ticks", f"{ticks}, {duration_s:.3f} s at {1 / header.period_s:g} Hz"),
+        ("longest tick", f"{1e3 * summary.longest_wait_s:.2f} ms of elapsed time"),
+        ("file", size),
+        (
+            "largest",
+            f"force {summary.max_force_N:.2f} N, torque"
+            f" {1e3 * summary.max_torque_Nm:.0f} mN·m, penetration"
+            f" {depth(summary.max_penetration_m)},"
+            f" {count(summary.max_contacts, 'contact')}",
+        ),
+        ("device limit", f"{count(summary.limited_ticks, 'tick')} at it"),
+    ]
     for mesh in header.mesh_sha256:
         changed = "  [yellow]changed since[/]" if mesh in summary.changed_meshes else ""
-        table.add_row("mesh", f"{escape(mesh)}{changed}")
+        facts.append(("mesh", f"{escape(mesh)}{changed}"))
     console.print(str(file), style="bold", soft_wrap=True, markup=False)
-    console.print(table, soft_wrap=True)
+    console.print(show_facts(facts), soft_wrap=True)
     for sentence in summary.gaps:
         console.print(f"[yellow]{sentence}[/]", soft_wrap=True)
     if not summary.gaps:

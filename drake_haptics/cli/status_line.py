@@ -12,6 +12,7 @@ from pydrake.systems.framework import Context
 from rich.console import Console
 from rich.table import Table
 
+from drake_haptics.cli.console import show_facts
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.cockpit.handle_holder import SoftStartDevice
 from drake_haptics.common.one_line import count, depth
@@ -66,7 +67,7 @@ def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) 
 
 
 def describe_fault(name: str) -> str:
-    """Returns the name of a `Fault` as a word."""
+    """Returns a name, such as that of a `Fault`, as words."""
     return name.lower().replace("_", " ")
 
 
@@ -89,11 +90,10 @@ def describe_link(link: LinkStatus) -> str:
 
 def describe_device(figures: Mapping[str, Any]) -> str:
     """Returns a line with the figures of `DeviceWatch.to_dict`."""
-    faults = [f"{n} {describe_fault(name)}" for name, n in figures["faults"].items()]
     words = [
         f"showed at most {figures['max_force_N']:.2f} N,"
         f" {1e3 * figures['max_torque_Nm']:.0f} mN·m",
-        f"faults: {', '.join(faults) or 'none'}",
+        f"faults: {_count_each(figures['faults'])}",
     ]
     if figures["received"]:
         words.insert(
@@ -214,50 +214,37 @@ class StatusLine(LiveLine):
 
 def make_summary(figures: dict[str, Any]) -> Table:
     """Returns a table of `RunStatistics.to_dict`."""
-    table = Table(box=None, show_header=False, pad_edge=False)
-    table.add_column(style="dim")
-    table.add_column()
-
     contacts, clusters = figures["contacts"], figures["clusters"]
-    table.add_row(
-        "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
-    )
-    table.add_row(
-        "whole tick", _describe_times(figures["tick_us"]) + _explain_slow_ticks(figures)
-    )
-    table.add_row("contact query", _describe_times(figures["contact_query_us"]))
-    if late := figures["lateness_us"]:
-        table.add_row(
-            "late", f"{_describe_times(late)}; {count(late['skipped'], 'tick')} skipped"
-        )
-    table.add_row(
-        "contacts",
+    times, late = _describe_times(figures["tick_us"]), figures["lateness_us"]
+    facts = {
+        "ran": f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}",
+        "whole tick": times + _explain_slow_ticks(figures),
+        "contact query": _describe_times(figures["contact_query_us"]),
+    }
+    if late:
+        skipped = count(late["skipped"], "tick")
+        facts["late"] = f"{_describe_times(late)}; {skipped} skipped"
+    facts["contacts"] = (
         f"median {contacts['median']:.0f}, at most {contacts['max']}; in clusters:"
-        f" median {clusters['median']:.0f}, at most {clusters['max']}",
+        f" median {clusters['median']:.0f}, at most {clusters['max']}"
     )
-    table.add_row(
-        "largest commanded" if figures.get("device") else "largest",
+    facts["largest commanded" if figures.get("device") else "largest"] = (
         f"force {figures['max_force_N']:.2f} N,"
         f" torque {1e3 * figures['max_torque_Nm']:.0f} mN·m,"
         f" penetration {depth(figures['max_penetration_m'])}"
-        f"{_explain_near_force(figures)}",
+        f"{_explain_near_force(figures)}"
     )
     if any(figures["shed_ticks"].values()):
-        table.add_row(
-            "left out",
-            ", ".join(
-                f"{name} in {count(ticks, 'tick')}"
-                for name, ticks in figures["shed_ticks"].items()
-            ),
+        facts["left out"] = ", ".join(
+            f"{name} in {count(ticks, 'tick')}"
+            for name, ticks in figures["shed_ticks"].items()
         )
-    table.add_row(
-        "device limit", f"{count(figures['limit_hits'], 'tick')} at the limit"
-    )
+    facts["device limit"] = f"{count(figures['limit_hits'], 'tick')} at the limit"
     if device := figures.get("device"):
-        table.add_row("device", describe_device(device))
+        facts["device"] = describe_device(device)
     if figures["energy_J"]:
-        table.add_row("energy", _describe_energy(figures["energy_J"]))
-    return table
+        facts["energy"] = _describe_energy(figures["energy_J"])
+    return show_facts(facts.items())
 
 
 def _explain_slow_ticks(figures: dict[str, Any]) -> str:
@@ -356,29 +343,23 @@ class DriverStatusLine(LiveLine):
 
 def make_driver_summary(figures: Mapping[str, Any]) -> Table:
     """Returns a table of `DeviceDriver.to_dict`."""
-    table = Table(box=None, show_header=False, pad_edge=False)
-    table.add_column(style="dim")
-    table.add_column()
     late = figures["lateness_us"]
-    table.add_row(
-        "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
-    )
-    table.add_row(
-        "late", f"{_describe_times(late)}, {count(late['skipped'], 'tick')} skipped"
-    )
-    table.add_row("packets", _count_each(figures["packets"]))
-    table.add_row(
-        "largest",
-        f"force {figures['max_force_N']:.2f} of {figures['force_limit_N']:g} N,"
-        f" torque {1e3 * figures['max_torque_Nm']:.0f} of"
+    skipped = count(late["skipped"], "tick")
+    facts = {
+        "ran": f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}",
+        "late": f"{_describe_times(late)}, {skipped} skipped",
+        "packets": _count_each(figures["packets"]),
+        "largest": f"force {figures['max_force_N']:.2f} of"
+        f" {figures['force_limit_N']:g} N, torque"
+        f" {1e3 * figures['max_torque_Nm']:.0f} of"
         f" {1e3 * figures['torque_limit_Nm']:g} mN·m",
-    )
-    table.add_row("over limits", f"{count(figures['limit_violations'], 'tick')}")
-    table.add_row("faults", _count_each(figures["faults"]))
-    table.add_row("recovered", _count_each(figures["recoveries"]))
-    return table
+        "over limits": count(figures["limit_violations"], "tick"),
+        "faults": _count_each(figures["faults"]),
+        "recovered": _count_each(figures["recoveries"]),
+    }
+    return show_facts(facts.items())
 
 
 def _count_each(counts: Mapping[str, int]) -> str:
-    words = [f"{n} {name.lower().replace('_', ' ')}" for name, n in counts.items()]
+    words = [f"{n} {describe_fault(name)}" for name, n in counts.items()]
     return ", ".join(words) or "none"
