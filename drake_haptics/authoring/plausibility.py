@@ -62,38 +62,45 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
     ]
 
 
+def _list_objects(
+    haptic: HapticDiagram,
+) -> list[tuple[EnvironmentObject, Decomposition, RigidTransform]]:
+    """Returns description, pieces and pose of each object."""
+    return [
+        (item, part, item.pose.to_rigid_transform())
+        for item, part in zip(haptic.scene.environment, haptic.environment, strict=True)
+    ]
+
+
 def _list_parts(
     haptic: HapticDiagram,
 ) -> list[tuple[str, Tool | EnvironmentObject, Decomposition]]:
     """Returns key, description and pieces of the tool, then of the objects."""
-    objects = zip(haptic.scene.environment, haptic.environment, strict=True)
     return [
         ("tool", haptic.scene.tool, haptic.tool),
-        *((f"environment[{i}]", *one) for i, one in enumerate(objects)),
+        *(
+            (f"environment[{i}]", item, part)
+            for i, (item, part, _) in enumerate(_list_objects(haptic))
+        ),
     ]
 
 
 def _make_size_warnings(haptic: HapticDiagram) -> list[str]:
     """Returns sentences about meshes that are probably in another unit."""
-    tool, *objects = _list_parts(haptic)
-    sentences = [_make_size_warning(*tool, _LARGEST_USUAL_TOOL_M)] + [
-        _make_size_warning(*item, LARGEST_USUAL_EXTENT_M) for item in objects
-    ]
-    return [sentence for sentence in sentences if sentence]
-
-
-def _make_size_warning(
-    key: str, item: Tool | EnvironmentObject, part: Decomposition, largest_m: float
-) -> str:
-    extent_m = max(part.mesh.report.extent)
-    if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
-        return ""
-    size = f"{key}: {Path(item.mesh).name} is {length(extent_m)} wide"
-    unit = guess_unit(extent_m / item.scale, SMALLEST_USUAL_EXTENT_M, largest_m)
-    if unit is None:
-        return f"{size}; is its scale ({item.scale:g}) right?"
-    factor = METERS_PER_UNIT[unit]
-    return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
+    sentences = []
+    for key, item, part in _list_parts(haptic):
+        largest_m = _LARGEST_USUAL_TOOL_M if key == "tool" else LARGEST_USUAL_EXTENT_M
+        extent_m = max(part.mesh.report.extent)
+        if not SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
+            size = f"{key}: {Path(item.mesh).name} is {length(extent_m)} wide"
+            unit = guess_unit(extent_m / item.scale, SMALLEST_USUAL_EXTENT_M, largest_m)
+            sentences.append(
+                f"{size}; is its scale ({item.scale:g}) right?"
+                if unit is None
+                else f"{size}; if the file is in {unit}:"
+                f" {key}.scale: {METERS_PER_UNIT[unit]:g}"
+            )
+    return sentences
 
 
 def _make_open_mesh_warnings(haptic: HapticDiagram) -> list[str]:
@@ -127,10 +134,7 @@ def _make_clearance_warnings(haptic: HapticDiagram) -> list[str]:
     The tool is moved along the path of the scene's hand, even with a real device.
     """
     scene, tool = haptic.scene, haptic.tool.core
-    objects = [
-        (part.core, item.pose.to_rigid_transform())
-        for item, part in zip(scene.environment, haptic.environment, strict=True)
-    ]
+    objects = [(part.core, X_WO) for _, part, X_WO in _list_objects(haptic)]
     materials = [item.material for item in scene.environment]
     keys = ["contact.tolerance_m"] * len(objects)
     kept_m = [scene.contact.tolerance_m] * len(objects)
@@ -186,15 +190,8 @@ def _make_reach_warnings(haptic: HapticDiagram) -> list[str]:
     else:
         where = "where the device's workspace lets the tool go"
         p_WT, radius_m = _find_workspace(haptic)
-    gap_m = min(
-        (
-            _calc_gap(p_WT, item.pose.to_rigid_transform(), part)
-            for item, part in zip(
-                haptic.scene.environment, haptic.environment, strict=True
-            )
-        )
-    )
-    gap_m -= radius_m
+    gaps_m = [_calc_gap(p_WT, X_WO, part) for _, part, X_WO in _list_objects(haptic)]
+    gap_m = min(gaps_m) - radius_m
     if gap_m <= calc_first_touch(haptic.scene.contact):
         return []
     return [
@@ -206,15 +203,10 @@ def _make_reach_warnings(haptic: HapticDiagram) -> list[str]:
 
 def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
     """Returns corners of the tool's box along the hand's path, (n, 8, 3), m."""
-    places = sample_path(haptic.scene.hand.path)
-    return np.array([_find_corners(haptic.tool, X_WT) for X_WT in places])
-
-
-def _find_corners(tool: Decomposition, X_WT: RigidTransform) -> np.ndarray:
-    """Returns corners of the tool's bounding box, (8, 3), m in the world."""
-    box = zip(*_find_box(tool.mesh.vertices), strict=True)
+    box = zip(*_find_box(haptic.tool.mesh.vertices), strict=True)
     corners = np.array(np.meshgrid(*box)).reshape(3, -1)
-    return (X_WT @ corners).T
+    places = sample_path(haptic.scene.hand.path)
+    return np.array([(X_WT @ corners).T for X_WT in places])
 
 
 def _find_workspace(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
@@ -259,8 +251,7 @@ def _make_device_warnings(haptic: HapticDiagram) -> list[str]:
                 f"device.{key} is {asked:g}: more than the {rated:g} {unit} that"
                 f" '{device.preset}' is rated for"
             )
-    reading = None if backend is None else backend.read()
-    if backend is None or reading is None:
+    if backend is None or (reading := backend.read()) is None:
         return sentences
     if haptic.scene.device.base is None and not backend.is_placed:
         return sentences
@@ -302,14 +293,12 @@ def make_start_warnings(haptic: HapticDiagram) -> list[str]:
         allowed_m = 0.0
     depths_m = _calc_depths(haptic, X_WT)
     sentences = []
-    for item, part, depth_m in zip(
-        scene.environment, haptic.environment, depths_m, strict=True
+    for (item, part, X_WO), depth_m in zip(
+        _list_objects(haptic), depths_m, strict=True
     ):
         if depth_m > allowed_m:
             how = f"{length(depth_m)} deep in '{item.name}'"
-        elif _is_inside(
-            haptic.tool, part, item.pose.to_rigid_transform().inverse() @ X_WT
-        ):
+        elif _is_inside(haptic.tool, part, X_WO.inverse() @ X_WT):
             how = f"inside '{item.name}', and no contact leads it out"
         else:
             continue
@@ -337,10 +326,9 @@ def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
 
 def _make_query(haptic: HapticDiagram) -> ContactQuery:
     """Returns a query of a scene's tool and objects."""
-    environment = zip(haptic.scene.environment, haptic.environment, strict=True)
     objects = [
-        ContactObject(item.name, part.core, item.pose.to_rigid_transform())
-        for item, part in environment
+        ContactObject(item.name, part.core, X_WO)
+        for item, part, X_WO in _list_objects(haptic)
     ]
     return ContactQuery(haptic.tool.core, objects, 0.0)
 
