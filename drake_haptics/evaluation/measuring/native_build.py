@@ -60,8 +60,7 @@ def load_coal_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
     )
     include = prefix / "include"
     library = next((prefix / "lib").glob("libcoal.*"))
-    native = _load_native(name, [include, include / "eigen3"], [library])
-    return _declare(native, name, functions)
+    return _load_native(name, [include, include / "eigen3"], library, functions)
 
 
 def load_mujoco_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
@@ -73,9 +72,8 @@ def load_mujoco_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
 
     folder = Path(mujoco.__file__).parent
     library = next(folder.glob("libmujoco*"))
-    native = _load_native(name, [folder / "include"], [library])
-    text = ctypes.c_char_p
-    return _declare(native, name, {"new": [text, text, INTEGER], **functions})
+    new = [ctypes.c_char_p, ctypes.c_char_p, INTEGER]
+    return _load_native(name, [folder / "include"], library, {"new": new, **functions})
 
 
 def open_mjcf(new: Callable[..., int | None], mjcf: str) -> int:
@@ -116,17 +114,11 @@ def add_pieces(
         )
 
 
-def _declare(
-    native: ctypes.CDLL, name: str, functions: dict[str, Sequence[Any]]
-) -> ctypes.CDLL:
-    for rest, arguments in {"delete": [HANDLE], **functions}.items():
-        getattr(native, f"{name}_{rest}").argtypes = list(arguments)
-    getattr(native, f"{name}_new").restype = HANDLE
-    return native
-
-
 def _load_native(
-    name: str, include: Sequence[Path], libraries: Sequence[Path]
+    name: str,
+    include: Sequence[Path],
+    library: Path,
+    functions: dict[str, Sequence[Any]],
 ) -> ctypes.CDLL:
     """Compiles `native/<name>.cc`, unless it is cached, and loads it."""
     compiler = os.environ.get("CXX") or next(
@@ -142,13 +134,17 @@ def _load_native(
         *("-std=c++17", "-O3", "-DNDEBUG", "-shared", "-fPIC", "-w"),
         *(f"-I{_SOURCES}", *(f"-isystem{folder}" for folder in include)),
         str(_SOURCES / f"{name}.cc"),
-        *map(str, libraries),
-        *sorted({f"-Wl,-rpath,{library.parent}" for library in libraries}),
+        str(library),
+        f"-Wl,-rpath,{library.parent}",
     ]
     target = _target(name, command)
     if not target.exists():
         _compile(command, target)
-    return ctypes.CDLL(str(target))
+    native = ctypes.CDLL(str(target))
+    for rest, arguments in {"delete": [HANDLE], **functions}.items():
+        getattr(native, f"{name}_{rest}").argtypes = list(arguments)
+    getattr(native, f"{name}_new").restype = HANDLE
+    return native
 
 
 def _target(name: str, command: Sequence[str]) -> Path:
