@@ -9,7 +9,6 @@ from page_parts import read_part
 from paper_samples import make_evaluation
 from paper_table import DRAWN, PAGE, file_of, keep_times, with_figures
 
-from drake_haptics.evaluation.paper.evaluation import Run
 from drake_haptics.evaluation.paper.pen_pass import OURS, measure_pen_pass
 from drake_haptics.evaluation.paper.profile import measure_profile, sum_up
 from drake_haptics.evaluation.paper.published import TABLE_1
@@ -120,7 +119,7 @@ def test_own_shapes_are_cut_as_the_page_tells():
 def test_a_scenario_that_is_run_again_meets_what_the_page_tells():
     """Of all that is no time."""
     profile = measure_profile(scenario_makers(None)["spoon in cup"](), passes=1)
-    run = [Run(profile, sum_up(profile))]
+    run = [sum_up(profile)]
     columns = "pieces", "triangles", "contacts", "clusters", "objects touched"
     assert_is_on_the_page(make_run_table(run), (*columns, "deepest, mm"))
 

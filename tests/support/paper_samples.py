@@ -5,10 +5,10 @@ from functools import cache
 import numpy as np
 
 from drake_haptics.evaluation.paper.depth_cost import DepthCost, DepthCosts
-from drake_haptics.evaluation.paper.evaluation import Analysis, PaperEvaluation, Run
+from drake_haptics.evaluation.paper.evaluation import Analysis, PaperEvaluation
 from drake_haptics.evaluation.paper.fits import fit_line, fit_power
 from drake_haptics.evaluation.paper.pen_pass import measure_pen_pass
-from drake_haptics.evaluation.paper.profile import Profile, sum_up
+from drake_haptics.evaluation.paper.profile import Profile
 from drake_haptics.evaluation.paper.scaling import ForceScaling, PairScaling
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 
@@ -34,12 +34,6 @@ def make_profile(name="spoon in cup", figure="11-(a)", tick_us=100.0, touched=1)
         touched_triangles=3_960,
         distance_m=np.where(inside, -1e-3, 1e-3),
     )
-
-
-def make_run(**changes):
-    """A run of such a profile."""
-    profile = make_profile(**changes)
-    return Run(profile, sum_up(profile))
 
 
 def make_forces(method, exponent):
@@ -96,7 +90,7 @@ def make_evaluation():
             "drake_haptics": "0",
         },
         table1=make_table1(),
-        figure11=(make_run(), make_run(name="wrench in machine room", figure="11-(c)")),
+        figure11=(make_profile(), make_profile("wrench in machine room", "11-(c)")),
         figure12=(measure_pen_pass(seconds=0.5),),
         analysis=make_analysis(),
     )

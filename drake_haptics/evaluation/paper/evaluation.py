@@ -12,12 +12,7 @@ from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.evaluation.models import check_folder
 from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
 from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
-from drake_haptics.evaluation.paper.profile import (
-    Profile,
-    ProfileFigures,
-    measure_profile,
-    sum_up,
-)
+from drake_haptics.evaluation.paper.profile import Profile, measure_profile, sum_up
 from drake_haptics.evaluation.paper.scaling import (
     ForceScaling,
     PairScaling,
@@ -58,14 +53,6 @@ QUICK = Effort(
 
 
 @dataclass(frozen=True)
-class Run:
-    """A run of a scenario of Figure 11, tick by tick and summarized."""
-
-    profile: Profile
-    figures: ProfileFigures
-
-
-@dataclass(frozen=True)
 class Analysis:
     """The figures of section 6.3, with forces for each kind of clustering."""
 
@@ -85,7 +72,7 @@ class PaperEvaluation:
 
     machine: dict[str, str | int]
     table1: tuple[ModelFigures, ...] = ()
-    figure11: tuple[Run, ...] = ()
+    figure11: tuple[Profile, ...] = ()
     figure12: tuple[PenPass, ...] = ()
     analysis: Analysis | None = None
     is_cut_short: bool = False
@@ -100,7 +87,7 @@ class PaperEvaluation:
             "machine": self.machine,
             "is_cut_short": self.is_cut_short,
             "table1": [asdict(row) for row in self.table1],
-            "figure11": [run.figures.to_dict() for run in self.figure11],
+            "figure11": [sum_up(profile).to_dict() for profile in self.figure11],
             "figure12": [passed.to_dict() for passed in self.figure12],
             "analysis": analysis,
         }
@@ -140,14 +127,13 @@ def evaluate_paper(
 
 def _measure_figure11(
     effort: Effort, meshes: Path | None, show: Progress
-) -> tuple[Run, ...]:
+) -> tuple[Profile, ...]:
     makers = scenario_makers(meshes)
-    runs = []
+    profiles = []
     for k, (name, make) in enumerate(makers.items()):
         show(name, k / len(makers))
-        profile = measure_profile(make(), effort.profile_s)
-        runs.append(Run(profile, sum_up(profile)))
-    return tuple(runs)
+        profiles.append(measure_profile(make(), effort.profile_s))
+    return tuple(profiles)
 
 
 def _measure_figure12(

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from drake_haptics.evaluation.measuring.timing import name_machine
-from drake_haptics.evaluation.paper.evaluation import PaperEvaluation, Part, Run
+from drake_haptics.evaluation.paper.evaluation import PaperEvaluation, Part
 from drake_haptics.evaluation.paper.pen_pass import PenPass
 from drake_haptics.evaluation.paper.plots import (
     draw_analysis,
     draw_pen_pass,
     draw_profile,
 )
+from drake_haptics.evaluation.paper.profile import Profile, sum_up
 from drake_haptics.evaluation.paper.published import MACHINE
 from drake_haptics.evaluation.paper.tables import (
     make_analysis_tables,
@@ -85,8 +86,9 @@ def make_sections(evaluation: PaperEvaluation) -> list[Section]:
         blocks = [Block("", judge_table1(pieces), [])]
         tables = [make_table1(pieces)]
         sections.append(Section("table1", "Table 1: convex pieces", blocks, tables))
-    if runs := evaluation.figure11:
-        blocks = [_make_block(run, evaluation.is_cut_short) for run in runs]
+    if profiles := evaluation.figure11:
+        runs = [sum_up(profile) for profile in profiles]
+        blocks = [_make_block(profile, evaluation.is_cut_short) for profile in profiles]
         tables = [make_run_table(runs), make_profile_table(runs)]
         title = "Figure 11: time of each tick"
         sections.append(Section("figure11", title, blocks, tables))
@@ -114,12 +116,12 @@ def describe_machine_line(evaluation: PaperEvaluation) -> str:
     )
 
 
-def _make_block(run: Run, is_cut_short: bool) -> Block:
-    figures = run.figures
+def _make_block(profile: Profile, is_cut_short: bool) -> Block:
+    figures = sum_up(profile)
     picture = Picture(
         f"figure11-{figures.name.replace(', ', '-').replace(' ', '-')}",
         f"{figures.name}: time of each tick above, number of contacts below",
-        partial(draw_profile, run.profile, figures),
+        partial(draw_profile, profile, figures),
     )
     like = f", as Figure {figures.figure}" if figures.figure else ""
     title = f"{figures.name[0].upper()}{figures.name[1:]}{like}"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from drake_haptics.evaluation.measuring.timing import TickTimes
-from drake_haptics.evaluation.paper.evaluation import Analysis, Run
+from drake_haptics.evaluation.paper.evaluation import Analysis
 from drake_haptics.evaluation.paper.pen_pass import EXACT, PenPass
+from drake_haptics.evaluation.paper.profile import ProfileFigures
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 from drake_haptics.report.page import Table
 
@@ -37,10 +38,10 @@ def make_table1(rows: Sequence[ModelFigures]) -> Table:
     )
 
 
-def make_profile_table(runs: Sequence[Run]) -> Table:
+def make_profile_table(runs: Sequence[ProfileFigures]) -> Table:
     """Returns the times of Figure 11, disjoint (D) and penetrating (P)."""
     rows = []
-    for figures in (run.figures for run in runs):
+    for figures in runs:
         for state, times in (
             ("D", figures.disjoint),
             ("P", figures.penetrating),
@@ -71,7 +72,7 @@ def _format(times: TickTimes) -> str:
     return f"{times.median_us:.0f} / {times.p99_us:.0f} / {times.p99_9_us:.0f}"
 
 
-def make_run_table(runs: Sequence[Run]) -> Table:
+def make_run_table(runs: Sequence[ProfileFigures]) -> Table:
     """Returns the sizes of the scenarios of Figure 11, and their rates."""
     return Table.of(
         "Scenarios",
@@ -93,7 +94,7 @@ def make_run_table(runs: Sequence[Run]) -> Table:
             "disturbed, µs": lambda of: _format(of.disturbed),
             "under 1 ms": lambda of: f"{100.0 * of.in_time:.2f} %",
         },
-        [run.figures for run in runs],
+        runs,
     )
 
 

@@ -28,9 +28,9 @@ def test_parts_come_in_the_papers_order_with_progress(one_scenario):
         PARTS[::-1], effort, None, lambda what, share: shown.append((what, share))
     )
     assert len(found.table1) == 6
-    assert [run.figures.name for run in found.figure11] == ["spoon in cup"]
+    assert [profile.name for profile in found.figure11] == ["spoon in cup"]
     # Less the first of the 200, that has no beginning, and 20 that warm up.
-    assert len(found.figure11[0].profile.tick_s) == 179
+    assert len(found.figure11[0].tick_s) == 179
     assert [passed.triangles for passed in found.figure12] == [1280, 20480]
     assert found.analysis.depths.rows[0].instructions is None
     shares = [share for _, share in shown]

@@ -4,9 +4,10 @@ import json
 import re
 
 import pytest
-from paper_samples import make_evaluation, make_run
+from paper_samples import make_evaluation, make_profile
 
 from drake_haptics.evaluation.paper.plots import draw_profile
+from drake_haptics.evaluation.paper.profile import sum_up
 from drake_haptics.evaluation.paper.report import (
     count_verdicts,
     make_sections,
@@ -81,13 +82,13 @@ def test_the_figures_are_plain_data():
 
 
 def test_a_chart_marks_the_intervals():
-    run = make_run()
-    figure = draw_profile(run.profile, run.figures)
+    profile = make_profile()
+    figure = draw_profile(profile, sum_up(profile))
     above, below = figure.axes
     assert "(D: disjoint, P: penetrating)" in figure.get_suptitle()
     assert [text.get_text() for text in above.texts] == ["D", "P"]
     (query,) = [line for line in above.lines if line.get_label() == "contact query"]
-    assert query.get_ydata().max() == 1e6 * run.profile.query_s.max()
+    assert query.get_ydata().max() == 1e6 * profile.query_s.max()
     low, high = above.get_ylim()
     assert low < 5.0 and high > 1000.0
     for axes in (above, below):

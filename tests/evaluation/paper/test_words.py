@@ -9,7 +9,6 @@ from paper_samples import (
     make_evaluation,
     make_forces,
     make_profile,
-    make_run,
     make_table1,
 )
 
@@ -63,7 +62,7 @@ def test_the_disturbed_rate_is_compared_with_the_papers(disturbed_us, verdict, w
 
 
 def test_contacts_and_overhead_are_compared():
-    statements = judge_run(make_run().figures)
+    statements = judge_run(sum_up(make_profile()))
     assert find(statements, "Up to 20 contacts").verdict == "agrees"
     overhead = find(statements, "100 % more where objects penetrate")
     assert overhead.verdict == "differs"
@@ -95,10 +94,10 @@ def test_the_beginning_of_a_path_leaves_open_what_happens_at_most(figure, at_mos
 
 
 def test_the_room_must_be_the_papers():
-    room = make_run(figure="11-(c)", touched=17)
-    assert find(judge_run(room.figures), "897 objects").verdict == "agrees"
-    other = make_run(figure="11-(c)", touched=9)
-    assert find(judge_run(other.figures), "897 objects").verdict == "differs"
+    room = make_profile(figure="11-(c)", touched=17)
+    assert find(judge_run(sum_up(room)), "897 objects").verdict == "agrees"
+    other = make_profile(figure="11-(c)", touched=9)
+    assert find(judge_run(sum_up(other)), "897 objects").verdict == "differs"
 
 
 @pytest.mark.parametrize(
