@@ -9,7 +9,7 @@ from dataclasses import asdict
 import numpy as np
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Diagram, DiagramBuilder
-from pydrake.systems.primitives import Demultiplexer, PassThrough, TrajectorySource
+from pydrake.systems.primitives import PassThrough, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
 from drake_haptics import _core
@@ -26,6 +26,7 @@ from drake_haptics.evaluation.measuring.timing import clock_interval
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.framework.differentiable_system import export_parts
 
 # Share of a tick by which rows of the recording begin early, so that round-off never
 # selects the previous row.
@@ -174,10 +175,7 @@ def _make_recording(problem: LoopProblem) -> Diagram:
     )
     builder = DiagramBuilder()
     source = builder.AddNamedSystem("recording", TrajectorySource(trajectory))
-    parts = builder.AddNamedSystem("parts", Demultiplexer([7, 6]))
-    builder.Connect(source.get_output_port(), parts.get_input_port())
     ignored = builder.AddNamedSystem("ignored", PassThrough(6))
     builder.ExportInput(ignored.get_input_port(), "F_Ho_W_rendered")
-    builder.ExportOutput(parts.get_output_port(0), "X_WH")
-    builder.ExportOutput(parts.get_output_port(1), "V_WH")
+    export_parts(builder, source.get_output_port(), {"X_WH": 7, "V_WH": 6})
     return builder.Build()
