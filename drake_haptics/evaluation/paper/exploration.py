@@ -10,11 +10,10 @@ import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics import _core
 from drake_haptics._core import SceneTracker
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.mesh.mesh import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
 from drake_haptics.loop.builder import AddHapticLoop, HapticDiagram
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Scene
 from drake_haptics.systems.arm.hand_path import HandPath
@@ -127,14 +126,12 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
         max_force_N=_MAX_FORCE_N,
         max_torque_Nm=_MAX_TORQUE_NM,
     )
-    mass_kg = scenario.mass_kg
-    p_TTcm, I_TTcm_T = calc_mass_properties(scenario.tool.mesh, mass_kg)
     builder = DiagramBuilder()
     loop = AddHapticLoop(
         builder,
         device=device,
         tool=scenario.tool.core,
-        tool_dynamics=_core.RigidToolDynamics(mass_kg, p_TTcm, I_TTcm_T),
+        tool_dynamics=make_tool_dynamics(scenario.tool.mesh, scenario.mass_kg),
         objects=scenario.objects,
         contact=scenario.contact,
         coupling=CouplingParameters(),
