@@ -12,7 +12,7 @@ from rich.table import Table
 from drake_haptics.cli.command_help import CommandWithExamples, LazyGroup
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar, show_facts
-from drake_haptics.cli.endings import ExitCode
+from drake_haptics.cli.endings import ExitCode, warn
 from drake_haptics.cli.options import (
     file_option,
     json_option,
@@ -45,7 +45,7 @@ def log() -> None:
 def warn_of_gaps(file: Path, sentences: Iterable[str]) -> None:
     """Warns on stderr of each gap in a log."""
     for sentence in sentences:
-        click.secho(f"Warning: {file}: {sentence}", fg="yellow", err=True)
+        warn(f"{file}: {sentence}")
 
 
 def print_diff(diff: LogDiff, period_s: float) -> None:
@@ -173,9 +173,7 @@ def replay(
     warn_of_gaps(file, log.describe_gaps())
     if scene is None:
         for mesh in find_changed_meshes(log.header):
-            click.secho(
-                f"Warning: {mesh} is not what it was recorded on", fg="yellow", err=True
-            )
+            warn(f"{mesh} is not what it was recorded on")
     chosen = (
         set_values(load_log_scene(log), settings)
         if scene is None
