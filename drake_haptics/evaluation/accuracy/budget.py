@@ -22,6 +22,7 @@ from drake_haptics.evaluation.accuracy.setting import (
     find_model_change,
     is_effect,
 )
+from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.scene.schema import Scene
 
 # Factor of the budget within which later runs must stay.
@@ -242,11 +243,11 @@ def describe_help(choice: BudgetChoice) -> list[str]:
 
 def to_budget_data(choice: BudgetChoice, scene: Scene) -> dict[str, Any]:
     """Returns the outcome of a budget, ready for JSON."""
-    return {
+    data = {
         "budget_us": choice.budget_us,
         "holds": choice.holds,
-        "p99_us": _finite(choice.trial.middle_us),
-        "scene_p99_us": _finite(choice.trial.scene_us),
+        "p99_us": choice.trial.middle_us,
+        "scene_p99_us": choice.trial.scene_us,
         "promise": PROMISE,
         "given_up": [
             {
@@ -261,12 +262,13 @@ def to_budget_data(choice: BudgetChoice, scene: Scene) -> dict[str, Any]:
         "trials": [
             {
                 "setting": trial.combination.setting.to_dict(),
-                "p99_us": list(map(_finite, trial.p99_us)),
-                "scene_p99_us": list(map(_finite, trial.scene_p99_us)),
+                "p99_us": trial.p99_us,
+                "scene_p99_us": trial.scene_p99_us,
             }
             for trial in choice.trials
         ],
     }
+    return to_plain_data(data)
 
 
 def _describe_runs(p99_us: tuple[float, ...]) -> str:
@@ -324,7 +326,3 @@ def _format(value: Any) -> str:
     if isinstance(value, int | float):
         return f"{value:g}"
     return json.dumps(asdict(value))
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from drake_haptics.evaluation.accuracy.setting import Setting
@@ -149,10 +149,6 @@ class AccuracyStudy:
             f"contact)"
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Returns the study as plain data."""
-        return asdict(self)
-
     def to_json_data(self) -> dict[str, Any]:
         """Returns the study as data for `json.dumps(allow_nan=False)`.
 
@@ -163,5 +159,5 @@ class AccuracyStudy:
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> AccuracyStudy:
-        """Returns the study from the data of `to_dict` or `to_json_data`."""
+        """Returns the study from the data of `to_json_data`."""
         return read_figures(AccuracyStudy, data)

@@ -55,11 +55,6 @@ class Setting:
         """Returns the setting for a report, ready for JSON."""
         return asdict(self)
 
-    @staticmethod
-    def from_dict(data: Mapping[str, Any]) -> Setting:
-        """Returns the setting from the data of `to_dict`."""
-        return Setting(data["knob"], data["label"], dict(data["changes"]))
-
 
 def find_model_change(setting: Setting) -> str:
     """Returns a setting's difference of model; empty without one.

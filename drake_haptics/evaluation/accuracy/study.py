@@ -86,7 +86,7 @@ class Measurement:
 
         The quantities are "errors", "instructions", "native" and "ticks".
         """
-        scene = Setting.from_dict(task["setting"]).apply(self.scene)
+        scene = Setting(**task["setting"]).apply(self.scene)
         measure = getattr(self, f"_measure_{task['what']}")
         try:
             result: dict[str, Any] = measure(scene)

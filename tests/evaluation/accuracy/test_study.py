@@ -100,7 +100,7 @@ def test_a_setting_that_cannot_be_says_why(study):
 
 
 def test_goes_through_json(study):
-    text = json.dumps(study.to_dict())
+    text = json.dumps(study.to_json_data())
     assert AccuracyStudy.from_dict(json.loads(text)) == study
 
 
