@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import partial
 from importlib.util import find_spec
 from typing import Any, TypeVar
@@ -219,22 +219,11 @@ def _is_round(part: Tool | EnvironmentObject) -> bool:
     return fine > coarse
 
 
-@dataclass(frozen=True)
-class Knob:
-    """Keys of a scene that together trade accuracy for time.
-
-    Its settings for a scene are listed from accurate to fast, including the scene's.
-    """
-
-    keys: tuple[str, ...]
-    list_settings: Callable[[Scene], list[Setting]]
-
-
 def list_settings(scene: Scene) -> tuple[Setting, ...]:
     """Returns the unchanged scene, and then all settings of each knob in order."""
     settings = [AS_IT_IS]
-    for knob in KNOBS:
-        settings += knob.list_settings(scene)
+    for list_knob in KNOBS:
+        settings += list_knob(scene)
     return tuple(settings)
 
 
@@ -264,24 +253,20 @@ def make_reference(scene: Scene) -> Setting:
     return Setting("reference", "all triangles in exact pieces, every tick", changes)
 
 
-KNOBS: tuple[Knob, ...] = (
-    Knob(("contact.depth",), list_depths),
-    Knob(("contact.max_walk_steps",), list_walk_steps),
+# Each lists the settings of a knob, of keys that together trade accuracy for time, from
+# accurate to fast.
+KNOBS: tuple[Callable[[Scene], list[Setting]], ...] = (
+    list_depths,
+    list_walk_steps,
     *(
-        Knob(
-            tuple(f"{where}.{name}" for name in names), partial(list_some, where=where)
-        )
-        for names, list_some in (
-            (("decomposition", "decomposition_error_m"), list_decompositions),
-            (("max_triangles",), list_triangle_counts),
-            (("chord_error_m",), list_chord_errors),
-        )
+        partial(list_some, where=where)
+        for list_some in (list_decompositions, list_triangle_counts, list_chord_errors)
         for where in ("tool", "environment")
     ),
-    Knob(("contact.tolerance_m",), list_tolerances),
-    Knob(("contact.clustering", "contact.cluster_size_m"), list_clusterings),
-    *(Knob((f"effects.{name}",), partial(list_effect, name=name)) for name in _EFFECTS),
-    Knob(("contact.query_rate_hz",), list_query_rates),
-    Knob(("device.rate_hz",), list_rates),
-    Knob(("device.tick_budget_us",), list_budgets),
+    list_tolerances,
+    list_clusterings,
+    *(partial(list_effect, name=name) for name in _EFFECTS),
+    list_query_rates,
+    list_rates,
+    list_budgets,
 )

@@ -13,6 +13,7 @@ from drake_haptics.evaluation.accuracy.knobs import (
     list_settings,
     make_reference,
 )
+from drake_haptics.geometry.parsing.model_file import is_model_file
 from drake_haptics.scene.library import find_scene, list_scenes
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import GravityParameters, Scene
@@ -77,6 +78,16 @@ def _load(name):
     return load_scene(find_scene(name))
 
 
+def _list_knob_keys():
+    scenes = [_load(name) for name in SCENES]
+    # No shipped object is a model file, of which alone round shapes are known.
+    model = next(scene.tool.mesh for scene in scenes if is_model_file(scene.tool.mesh))
+    scenes.append(_load("cup_spoon"))
+    scenes[-1].environment[0].mesh = model
+    changes = [s.changes for scene in scenes for s in list_settings(scene)]
+    return {key for each in changes for key in each}
+
+
 def _is_told(key, knob_keys):
     parts = key.split(".")
     beginnings = {".".join(parts[: i + 1]) for i in range(len(parts))}
@@ -85,7 +96,7 @@ def _is_told(key, knob_keys):
 
 def test_every_key_is_a_knob_or_says_why_not():
     keys = list(_walk_keys(Scene))
-    knob_keys = {key for knob in KNOBS for key in knob.keys}
+    knob_keys = _list_knob_keys()
     # A part whose every key is told of is told of.
     leaves = [
         key for key in keys if not any(other.startswith(f"{key}.") for other in keys)
@@ -100,7 +111,7 @@ def test_every_key_is_a_knob_or_says_why_not():
 
 def test_no_line_is_of_a_key_that_is_gone():
     keys = set(_walk_keys(Scene))
-    knob_keys = {key for knob in KNOBS for key in knob.keys}
+    knob_keys = _list_knob_keys()
     assert (knob_keys | NOT_KNOBS.keys()) - keys == set()
     assert knob_keys & NOT_KNOBS.keys() == set()
 
@@ -116,22 +127,22 @@ def test_every_setting_is_a_possible_scene(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_every_knob_has_the_scenes_own_setting_once(name):
     scene = _load(name)
-    for knob in KNOBS:
-        changed = [setting.apply(scene) for setting in knob.list_settings(scene)]
+    for list_knob in KNOBS:
+        settings = list_knob(scene)
+        changed = [setting.apply(scene) for setting in settings]
         for i, one in enumerate(changed):
-            assert all(one != other for other in changed[:i]), knob.keys
+            assert all(one != other for other in changed[:i]), settings
         if changed:
-            assert changed.count(scene) == 1, knob.keys
+            assert changed.count(scene) == 1, settings
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_every_knob_sets_its_own_keys_only(name):
+def test_every_setting_of_a_knob_sets_its_key_and_leaves_the_scene(name):
     scene = _load(name)
     before = dataclasses.asdict(scene)
-    for knob in KNOBS:
-        for setting in knob.list_settings(scene):
-            assert set(setting.changes) & set(knob.keys), setting
-            assert dataclasses.asdict(scene) == before
+    for setting in list_settings(scene)[1:]:
+        assert setting.knob in setting.changes, setting
+    assert dataclasses.asdict(scene) == before
 
 
 def test_values_of_ones_own_are_among_the_settings():
@@ -144,10 +155,10 @@ def test_values_of_ones_own_are_among_the_settings():
     scene.tool.max_triangles = 100
     scene.tool.decomposition, scene.tool.decomposition_error_m = "merged", 2e-4
     scene.effects.gravity = GravityParameters([0.0, 1.0, -3.0])
-    for knob in KNOBS:
-        settings = knob.list_settings(scene)
+    for list_knob in KNOBS:
+        settings = list_knob(scene)
         if settings:
-            assert [s.apply(scene) for s in settings].count(scene) == 1, knob.keys
+            assert [s.apply(scene) for s in settings].count(scene) == 1, settings
     rates = [s.label for s in list_settings(scene) if s.knob == "device.rate_hz"]
     assert rates == ["2000 Hz", "1000 Hz", "800 Hz", "500 Hz", "250 Hz"]
 
