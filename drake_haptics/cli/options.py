@@ -68,14 +68,12 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
     )
 
 
-def max_triangles_option(function: _Function) -> _Function:
-    """Adds --max-triangles."""
-    return click.option(
-        "--max-triangles",
-        type=click.IntRange(min=4),
-        metavar="N",
-        help="Reduce the mesh to at most N triangles first.",
-    )(function)
+max_triangles_option = click.option(
+    "--max-triangles",
+    type=click.IntRange(min=4),
+    metavar="N",
+    help="Reduce the mesh to at most N triangles first.",
+)
 
 
 def read_mesh(
@@ -245,18 +243,16 @@ _SCALE_ARGUMENT = re.compile(r"(tool|environment)_scale=([\d.e+-]+)")
 _SCALE_KEY = re.compile(r"(tool|environment)(?:\[0\])?\.scale: ([\d.e+-]+)")
 
 
-def set_option(function: _Function) -> _Function:
-    """Adds --set KEY=VALUE, as `settings`."""
-    return click.option(
-        "--set",
-        "settings",
-        multiple=True,
-        metavar="KEY=VALUE",
-        shell_complete=complete_setting,
-        help="Change a value of the scene, like contact.stiffness_N_per_m=4000 or"
-        " tool.mesh=my.obj, a path from this folder; may be given again. Without"
-        " VALUE: its default, and an effect is off.",
-    )(function)
+set_option = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    shell_complete=complete_setting,
+    help="Change a value of the scene, like contact.stiffness_N_per_m=4000 or"
+    " tool.mesh=my.obj, a path from this folder; may be given again. Without"
+    " VALUE: its default, and an effect is off.",
+)
 
 
 def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
