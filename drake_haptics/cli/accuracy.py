@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -64,19 +63,6 @@ def print_study(console: Console, study: AccuracyStudy) -> None:
     for sentence in report.describe_missing(study):
         console.print(f"not measured: {sentence}", style="dim")
     console.print(report.describe_machine(study), style="dim")
-
-
-def print_choice(
-    console: Console, choice: budget.BudgetChoice, scene: Scene, name: str
-) -> None:
-    """Prints the outcome for a budget, and the accuracy that it costs."""
-    console.print(budget.describe_outcome(choice, name), style="bold")
-    if not choice.holds:
-        for sentence in budget.describe_help(choice):
-            console.print(sentence)
-        return
-    for sentence in budget.describe_sacrifices(choice, scene):
-        console.print(f"given up: {sentence}")
 
 
 def _make_table(study: AccuracyStudy) -> Table:
@@ -179,40 +165,36 @@ def accuracy(
             count_instructions=instructions,
         )
 
-    with _errors_in_a_line(), progress_bar() as show:
-        if budget_us is None:
-            check_page_path(page)
-            study = measure(show, asked)
-            if not (quick or no_peers or words):
-                study = add_peers(study, chosen, progress=show)
-            if asked is not None:
-                _require_measured(study, asked)
+    try:
+        with progress_bar() as show:
+            if budget_us is None:
+                check_page_path(page)
+                study = measure(show, asked)
+                if not (quick or no_peers or words):
+                    study = add_peers(study, chosen, progress=show)
+                if asked is not None:
+                    _require_measured(study, asked)
+                else:
+                    show("drawing the page", 1.0)
+                    call = write_call("accuracy", scene, settings)
+                    write_accuracy_page(
+                        study, page, f"{call} --quick" if quick else call
+                    )
             else:
-                show("drawing the page", 1.0)
-                call = write_call("accuracy", scene, settings)
-                write_accuracy_page(study, page, f"{call} --quick" if quick else call)
-        else:
-            choice = budget.choose_setting(
-                chosen,
-                budget_us,
-                make_study=partial(measure, show),
-                measure_p99=measure_p99,
-                progress=show,
-                runs=1 if quick else budget.RUNS,
-            )
+                choice = budget.choose_setting(
+                    chosen,
+                    budget_us,
+                    make_study=partial(measure, show),
+                    measure_p99=measure_p99,
+                    progress=show,
+                    runs=1 if quick else budget.RUNS,
+                )
+    except (ValueError, RunError, StudyError) as error:
+        raise HapticsError(str(error)) from error
     if budget_us is None:
         _show_study(study, None if words else page, json_file)
     else:
         _show_choice(choice, chosen, name, file, json_file)
-
-
-@contextmanager
-def _errors_in_a_line() -> Iterator[None]:
-    """Converts expected failures of the measurement to messages."""
-    try:
-        yield
-    except (ValueError, RunError, StudyError) as error:
-        raise HapticsError(str(error)) from error
 
 
 def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None:
@@ -257,8 +239,13 @@ def _show_choice(
     write_json(budget.to_budget_data(choice, scene), json_file)
     if json_file != "-":
         console = make_console(markup=False)
-        print_choice(console, choice, scene, name)
-        if choice.holds:
+        console.print(budget.describe_outcome(choice, name), style="bold")
+        if not choice.holds:
+            for sentence in budget.describe_help(choice):
+                console.print(sentence)
+        else:
+            for sentence in budget.describe_sacrifices(choice, scene):
+                console.print(f"given up: {sentence}")
             console.print(f"Wrote {file}: drake-haptics run {file}", soft_wrap=True)
     if not choice.holds:
         raise click.exceptions.Exit(ExitCode.NO)
