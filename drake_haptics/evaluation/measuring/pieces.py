@@ -101,11 +101,12 @@ def quiet_streams(*streams: int) -> Iterator[None]:
         os.close(nowhere)
 
 
-def mesh_assets(name: str, decomposition: Decomposition) -> str:
+def mesh_assets(parts: Mapping[str, Decomposition]) -> str:
     """Returns an MJCF element for each piece, the mesh `<name>_<number>`."""
     return "\n".join(
         f'<mesh name="{name}_{k}" inertia="convex" vertex="{_list_vertices(piece)}"/>'
-        for k, piece in enumerate(decomposition.pieces)
+        for name, part in parts.items()
+        for k, piece in enumerate(part.pieces)
     )
 
 

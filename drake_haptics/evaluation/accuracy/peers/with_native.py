@@ -94,13 +94,12 @@ def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
 def _make_mjcf(problem: PeerProblem) -> str:
     """Returns a model with a body for each object, and a free last one for the tool."""
     parts = {f"object{i}": part for i, part in enumerate(problem.objects)}
-    assets = [mesh_assets(*each) for each in {"tool": problem.tool, **parts}.items()]
     reach = f'contype="0" conaffinity="1" margin="{problem.tolerance_m!r}"'
     return f"""
 <mujoco>
   <option><flag multiccd="disable"/></option>
   <size memory="64M"/>
-  <asset>{" ".join(assets)}</asset>
+  <asset>{mesh_assets({"tool": problem.tool, **parts})}</asset>
   <worldbody>
     {mesh_bodies(parts, problem.part.X_WO, "")}
     <body>

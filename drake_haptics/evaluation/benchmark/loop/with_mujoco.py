@@ -85,13 +85,12 @@ def make_mjcf(problem: LoopProblem) -> str:
     parts = {f"object{i}": part for i, part in enumerate(problem.objects)}
     surface = f'condim="1" solref="{touch}" solimp="{_SOLIMP}"'
     objects = mesh_bodies(parts, map(pose_to_vector, problem.X_WO), surface)
-    assets = [mesh_assets(*each) for each in {"tool": problem.tool, **parts}.items()]
     return f"""
 <mujoco>
   <option timestep="{problem.motion.period_s}" integrator="implicitfast"
           gravity="0 0 0"><flag multiccd="disable"/></option>
   <size memory="64M"/>
-  <asset>{" ".join(assets)}</asset>
+  <asset>{mesh_assets({"tool": problem.tool, **parts})}</asset>
   <worldbody>
     {objects}
     <body name="handle" mocap="true" {placed}/>
