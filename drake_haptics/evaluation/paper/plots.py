@@ -98,7 +98,7 @@ def _mark_intervals(
             axes.text(
                 (begin_s + end_s) / 2,
                 0.94,
-                interval.letter,
+                "P" if interval.penetrating else "D",
                 transform=axes.get_xaxis_transform(),
                 ha="center",
                 va="center",

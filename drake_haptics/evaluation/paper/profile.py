@@ -165,11 +165,6 @@ class Interval:
     stop: int
     penetrating: bool
 
-    @property
-    def letter(self) -> str:
-        """Mark as in the paper's Figure 11: P or D."""
-        return "P" if self.penetrating else "D"
-
 
 def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]:
     """Divides ticks into intervals that are disjoint or penetrating as a whole.
