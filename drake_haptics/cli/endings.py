@@ -163,17 +163,14 @@ def naming(given: str, kind: type[HapticsError] = HapticsError) -> Iterator[None
 @contextmanager
 def _warnings_in_lines(debug: bool) -> Iterator[None]:
     """Shows Python's warnings as one line each, unless debugging."""
-    before = warnings.showwarning
 
     def show(message: Warning | str, *_: Any, **__: Any) -> None:
         warn(str(message))
 
-    if not debug:
-        warnings.showwarning = show
-    try:
+    with warnings.catch_warnings():
+        if not debug:
+            warnings.showwarning = show
         yield
-    finally:
-        warnings.showwarning = before
 
 
 class _LineHandler(logging.Handler):
