@@ -235,11 +235,9 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
         ValueError: Matplotlib does not know the suffix.
         OSError: The file cannot be written.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.0, 6.0), layout="constrained")
-    FigureCanvasAgg(figure)
     force, depth, apart = figure.subplots(3, 1, sharex=True)
     pair = find_common_rows(a, b)
     for rows, name, color in zip(pair, names, INKS, strict=False):
