@@ -129,23 +129,30 @@ def choose_setting(
         return BudgetChoice(budget_us, scene, as_it_is, True, (as_it_is,))
     chain = list_combinations(make_study(None), scene)
     scale = as_it_is.middle_us / chain[0].p99_us
-    done = {0: as_it_is}
+    done, last = {0: as_it_is}, len(chain) - 1
+
+    def try_out(index: int) -> Trial:
+        combination = chain[index]
+        changed = combination.setting.apply(scene)
+        own: list[float] = []
+        scenes: list[float] = []
+        for i in range(runs):
+            what = f"combination {index} of {last}: run {i + 1} of {runs}"
+            progress(what, i / runs)
+            try:
+                own.append(measure_p99(changed))
+            except HapticsError:
+                return Trial(combination, (math.inf,), tuple(scenes))
+            scenes.append(measure_p99(scene))
+        return Trial(combination, tuple(own), tuple(scenes))
 
     def hold(index: int) -> bool:
         if index not in done:
-            what = f"combination {index} of {len(chain) - 1}"
-            done[index] = _try_out(
-                chain[index],
-                scene,
-                measure_p99,
-                runs,
-                lambda i: progress(f"{what}: run {i + 1} of {runs}", i / runs),
-            )
+            done[index] = try_out(index)
             p99_us = (*done[0].p99_us, *done[index].scene_p99_us)
             done[0] = Trial(done[0].combination, p99_us, p99_us)
         return done[index].holds(budget_us)
 
-    last = len(chain) - 1
     index = next(
         (i for i in range(1, last + 1) if scale * chain[i].p99_us <= budget_us), last
     )
@@ -168,26 +175,6 @@ def choose_setting(
         tuple(done.values()),
         errors,
     )
-
-
-def _try_out(
-    combination: Combination,
-    scene: Scene,
-    measure_p99: Callable[[Scene], float],
-    runs: int,
-    begin_run: Callable[[int], None],
-) -> Trial:
-    changed = combination.setting.apply(scene)
-    own: list[float] = []
-    scenes: list[float] = []
-    for i in range(runs):
-        begin_run(i)
-        try:
-            own.append(measure_p99(changed))
-        except HapticsError:
-            return Trial(combination, (math.inf,), tuple(scenes))
-        scenes.append(measure_p99(scene))
-    return Trial(combination, tuple(own), tuple(scenes))
 
 
 def describe_outcome(choice: BudgetChoice, name: str) -> str:
