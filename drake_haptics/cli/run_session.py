@@ -67,45 +67,32 @@ def build_scene(
     console: Console,
     scene: Scene,
     meshcat: Meshcat | None,
-    device: DeviceBackend | None = None,
-    recorder: TickRecorder | None = None,
+    device: DeviceBackend | None,
+    recorder: TickRecorder | None,
 ) -> HapticDiagram:
     """Builds the diagram, with a bar while meshes are cut into pieces.
 
     Warnings about the scene are written to stderr afterwards, one line each.
     """
-    with warnings.catch_warnings(record=True) as caught:
+    bars = Progress(console=console, transient=True, disable=not console.is_terminal)
+    tasks: dict[str, TaskID] = {}
+
+    def report(name: str, share: float) -> None:
+        if name not in tasks:
+            tasks[name] = bars.add_task(f"Cutting {name} into convex pieces", total=1)
+        bars.update(tasks[name], completed=share)
+
+    with warnings.catch_warnings(record=True) as caught, bars:
         warnings.simplefilter("always", SceneWarning)
-        haptic = _build(console, scene, meshcat, device, recorder)
+        haptic = BuildHapticDiagram(
+            scene, device=device, recorder=recorder, meshcat=meshcat, progress=report
+        )
     # After the bar is gone.
     for warning in caught:
         warn(str(warning.message))
     for sentence in check_plausibility(haptic):
         warn(name_scale_options(sentence))
     return haptic
-
-
-def _build(
-    console: Console,
-    scene: Scene,
-    meshcat: Meshcat | None,
-    device: DeviceBackend | None,
-    recorder: TickRecorder | None,
-) -> HapticDiagram:
-    quiet = not console.is_terminal
-    with Progress(console=console, transient=True, disable=quiet) as bars:
-        tasks: dict[str, TaskID] = {}
-
-        def report(name: str, share: float) -> None:
-            if name not in tasks:
-                tasks[name] = bars.add_task(
-                    f"Cutting {name} into convex pieces", total=1
-                )
-            bars.update(tasks[name], completed=share)
-
-        return BuildHapticDiagram(
-            scene, device=device, recorder=recorder, meshcat=meshcat, progress=report
-        )
 
 
 @dataclass(frozen=True)
