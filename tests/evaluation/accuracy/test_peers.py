@@ -91,8 +91,8 @@ def ball(tmp_path_factory: pytest.TempPathFactory) -> tuple[PeerProblem, np.ndar
 
 
 def _answer(method: PeerMethod, problem: PeerProblem) -> PeerAnswers:
-    if find_spec(method.package.replace("drake", "pydrake")) is None:
-        pytest.skip(f"{method.package} is not installed")
+    if find_spec(method.library.lower().replace("drake", "pydrake")) is None:
+        pytest.skip(f"{method.library} is not installed")
     return method.load()(problem)
 
 
@@ -174,11 +174,11 @@ def test_rows_have_figures_or_say_why_not(tmp_path: Path) -> None:
 
 def test_what_fails_says_why(box: tuple[PeerProblem, np.ndarray]) -> None:
     problem, depth = box
-    absent = PeerMethod("abacus", "no-such-abacus", "with_abacus", "answer", "beads")
+    absent = PeerMethod("No-such-abacus", "with_abacus", "answer", "beads")
     row = run_peer(absent, problem, _truth(depth))
-    assert row.library == "abacus" and row.native is row.errors is None
+    assert row.library == "No-such-abacus" and row.native is row.errors is None
     assert row.failure_reason == "no-such-abacus is not installed"
-    broken = replace(absent, package="numpy")
+    broken = replace(absent, library="NumPy")
     assert "with_abacus" in run_peer(broken, problem, _truth(depth)).failure_reason
 
 

@@ -38,14 +38,13 @@ class PeerMethod:
     """One method of another library.
 
     Attributes:
-        package: Name of the package for pip.
+        library: Name of the library; that of its package is the same in lower case.
         module: Module of this folder that has the `function`, an `Answer`.
         words: Description of the query, for the report.
         for_pieces: Whether it equals another method if the tool is one piece.
     """
 
     library: str
-    package: str
     module: str
     function: str
     words: str
@@ -63,20 +62,20 @@ class PeerMethod:
 
 # fmt: off
 METHODS = (
-    PeerMethod("coal", "coal", "with_native", "answer_with_coal",
+    PeerMethod("coal", "with_native", "answer_with_coal",
                f"signed distances {_SAME_LAW}"),
-    PeerMethod("MuJoCo", "mujoco", "with_native", "answer_with_mujoco",
+    PeerMethod("MuJoCo", "with_native", "answer_with_mujoco",
                f"mj_collision {_SAME_LAW}"),
-    PeerMethod("Drake", "drake", "with_drake", "answer_by_distances",
+    PeerMethod("Drake", "with_drake", "answer_by_distances",
                f"signed distances {_SAME_LAW}"),
-    PeerMethod("Drake", "drake", "with_drake", "answer_on_pieces",
+    PeerMethod("Drake", "with_drake", "answer_on_pieces",
                "point contact of the same pieces, without a tolerance"),
-    PeerMethod("Drake", "drake", "with_drake", "answer_on_meshes",
+    PeerMethod("Drake", "with_drake", "answer_on_meshes",
                "point contact of meshes as it takes them: convex hulls"),
-    PeerMethod("Drake", "drake", "with_drake", "answer_with_hull",
+    PeerMethod("Drake", "with_drake", "answer_with_hull",
                "hydroelastic without a tolerance: tool's hull compliant, objects"
                " rigid"),
-    PeerMethod("Drake", "drake", "with_drake", "answer_with_pieces",
+    PeerMethod("Drake", "with_drake", "answer_with_pieces",
                "hydroelastic without a tolerance: tool's pieces compliant, objects"
                " rigid", for_pieces=True),
 )
@@ -117,11 +116,12 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
     """Returns the row of one method; see `run_peers`."""
     if method.for_pieces and len(problem.tool.pieces) == 1:
         return _explain(method.library, method, "the tool is one piece: its hull")
+    package = method.library.lower()
     try:
-        library = f"{method.library} {version(method.package)}"
+        library = f"{method.library} {version(package)}"
         answers = method.load()(problem)
     except PackageNotFoundError:
-        return _explain(method.library, method, f"{method.package} is not installed")
+        return _explain(method.library, method, f"{package} is not installed")
     except (ImportError, HapticsError, RuntimeError, ValueError) as error:
         return _explain(library, method, str(error))
     remark = f", {answers.remark}" if answers.remark else ""
