@@ -27,11 +27,6 @@ class PairShape:
     A_vertices: np.ndarray
     B_vertices: np.ndarray
 
-    @property
-    def name(self) -> str:
-        """The kind and the size, such as `slab-642`."""
-        return f"{self.kind}-{self.size}"
-
 
 def make_pair(kind: str, size: int) -> PairShape:
     """Returns one of the twenty pairs.
