@@ -203,7 +203,7 @@ class StatusLine(LiveLine):
         clusters = pushing.Eval(pushing.get_system().GetMyContextFromRoot(context))
         device = loop.device.GetMyContextFromRoot(context)
         F_Ho_W_rendered = loop.device.GetOutputPort("F_Ho_W_rendered").Eval(device)
-        deepest_m = max(0.0, -contacts.distance.min(initial=0.0))
+        deepest_m = max(0.0, -contacts.least_distance)
         return (
             f"[bold]{np.linalg.norm(F_Ho_W_rendered[3:]):4.1f} N[/]"
             f" {1e3 * np.linalg.norm(F_Ho_W_rendered[:3]):4.0f} mN·m",

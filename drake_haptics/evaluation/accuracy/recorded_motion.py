@@ -160,7 +160,7 @@ def replay_tool(scene: Scene, motion: RecordedMotion) -> ToolReplay:
             simulator.Initialize()
         # All rows until the scene's next tick.
         F_To_W[row:] = sum(_read(port, root)[:6] for port in sources)
-        nearest = min(_read(loop.contacts, root).distance.tolist(), default=np.inf)
+        nearest = _read(loop.contacts, root).least_distance
         # Braking searches farther.
         distance[row:] = nearest if nearest < scene.contact.tolerance_m else np.inf
     return ToolReplay(F_To_W, distance)

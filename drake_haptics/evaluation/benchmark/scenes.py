@@ -128,9 +128,9 @@ def _first_touch(
     along_m = far_m
     while along_m > -far_m:
         X_WT[:3, 3] = start_W + along_m * way_W
-        distance = search.query(X_WT).distance
-        if len(distance):
-            return along_m - float(distance.min())
+        nearest_m = search.query(X_WT).least_distance
+        if np.isfinite(nearest_m):
+            return along_m - nearest_m
         along_m -= _SEARCH_STEP_M / 2
     raise AssertionError("a point of one mesh on a point of the other always touches")
 

@@ -81,9 +81,8 @@ def _press(search: SceneTracker, place: Place, reach_m: float) -> RigidTransform
     along_m = 0.0
     while along_m < reach_m:
         X_WT = RigidTransform(R_WT, start_W + along_m * place.toward_W)
-        distance = search.query(X_WT).distance
-        if len(distance):
-            nearest_m = float(distance.min())
+        nearest_m = search.query(X_WT).least_distance
+        if np.isfinite(nearest_m):
             if along_m == 0.0 and nearest_m < 0.0:
                 raise ValueError(f"the tool begins in contact at {start_W}")
             aim_m = along_m + nearest_m + place.press_m

@@ -140,10 +140,11 @@ def _run_once(scenario: Scenario, duration_s: float) -> _Pass:
         clusters = clusters_port.Eval(
             loop.contact_clustering.GetMyContextFromRoot(context)
         )
-        nearest_m = min(contacts.distance.tolist(), default=np.inf)
         touched = set(contacts.object_index.tolist())
         ever.update(touched)
-        notes.append((len(contacts), len(clusters), len(touched), nearest_m))
+        notes.append(
+            (len(contacts), len(clusters), len(touched), contacts.least_distance)
+        )
         timer.end_tick(context)
 
     # Prevents collection of earlier garbage during the run.
