@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import ctypes
 import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cache
 from itertools import groupby
 from typing import Protocol
 
@@ -84,7 +82,12 @@ class CoalScene:
 
         self._start = int(coal.GJKInitialGuess.BoundingVolumeGuess)
         self._tolerance_m = problem.tolerance_m
-        self._native = _native_scene()
+        self._native = load_coal_native(
+            "coal_scene",
+            add=PIECE,
+            setup=[HANDLE],
+            run=[HANDLE, REAL, INTEGER, INTEGER, REALS, INTEGERS, REALS, REALS],
+        )
         self._scene = self._native.coal_scene_new()
         weakref.finalize(self, self._native.coal_scene_delete, self._scene)
         add, scene = self._native.coal_scene_add, self._scene
@@ -110,16 +113,6 @@ class CoalScene:
             seconds,
         )
         return SceneAnswers(contacts, nearest, seconds - clock_interval())
-
-
-@cache
-def _native_scene() -> ctypes.CDLL:
-    return load_coal_native(
-        "coal_scene",
-        add=PIECE,
-        setup=[HANDLE],
-        run=[HANDLE, REAL, INTEGER, INTEGER, REALS, INTEGERS, REALS, REALS],
-    )
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -44,7 +42,12 @@ _CONTACT_SIZE = 11
 
 def answer_with_coal(problem: PeerProblem) -> PeerAnswers:
     """Answers by signed distances of all pairs whose boxes overlap, in C++."""
-    native = _load_coal()
+    native = load_coal_native(
+        "coal_contacts",
+        add=PIECE,
+        run=[HANDLE, REAL, INTEGER, REALS, REALS],
+        copy=_COPY,
+    )
     scene = native.coal_contacts_new()
     try:
         add_pieces(native.coal_contacts_add, scene, _TOOL, problem.tool, np.eye(4))
@@ -63,22 +66,14 @@ def answer_with_coal(problem: PeerProblem) -> PeerAnswers:
     return apply_law(problem, found)
 
 
-@cache
-def _load_coal() -> ctypes.CDLL:
-    return load_coal_native(
-        "coal_contacts",
-        add=PIECE,
-        run=[HANDLE, REAL, INTEGER, REALS, REALS],
-        copy=_COPY,
-    )
-
-
 def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
     """Answers by `mj_collision`, with updated poses and trees, in C.
 
     It returns one contact for each pair of pieces, as this package's law expects.
     """
-    native = _load_mujoco()
+    native = load_mujoco_native(
+        "mujoco_contacts", run=[HANDLE, INTEGER, REALS, REALS], copy=_COPY
+    )
     scene = open_mjcf(native.mujoco_contacts_new, _make_mjcf(problem))
     try:
         X_WT = np.ascontiguousarray(problem.motion.X_WT)
@@ -110,13 +105,6 @@ def _make_mjcf(problem: PeerProblem) -> str:
   </worldbody>
 </mujoco>
 """
-
-
-@cache
-def _load_mujoco() -> ctypes.CDLL:
-    return load_mujoco_native(
-        "mujoco_contacts", run=[HANDLE, INTEGER, REALS, REALS], copy=_COPY
-    )
 
 
 def _copy_contacts(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes
 import weakref
-from functools import cache
 
 import numpy as np
 
@@ -47,7 +45,10 @@ class MujocoLoop:
 
     def __init__(self, problem: LoopProblem):
         self._X_WG = np.ascontiguousarray(problem.X_WG)
-        self._native = _load()
+        self._native = load_mujoco_native(
+            "mujoco_loop",
+            run=[*(HANDLE, INTEGER, REALS), *(REALS, INTEGERS, REALS, REALS, REALS)],
+        )
         self._loop = open_mjcf(self._native.mujoco_loop_new, make_mjcf(problem))
         weakref.finalize(self, self._native.mujoco_loop_delete, self._loop)
 
@@ -113,11 +114,3 @@ def _solref(stiffness: float, damping: float, mass_kg: float) -> str:
     """Returns MuJoCo's attribute for a spring and damper, per mass."""
     scale = (1.0 - _IMPEDANCE) / mass_kg
     return f"{-stiffness * scale:.17g} {-damping * scale:.17g}"
-
-
-@cache
-def _load() -> ctypes.CDLL:
-    return load_mujoco_native(
-        "mujoco_loop",
-        run=[*(HANDLE, INTEGER, REALS), *(REALS, INTEGERS, REALS, REALS, REALS)],
-    )
