@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from drake_haptics._core import ConvexPair, ConvexPolytope
+from drake_haptics._core import ConvexPair
 from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.evaluation.accuracy.figures import Errors
@@ -55,8 +55,9 @@ def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
             piece, X_WO = objects[i]
             apart_m = np.linalg.norm(p_WC - centers_W[i], axis=1)
             near = np.flatnonzero(apart_m < reach_m[i] + tool_piece.radius)
-            found = _query(tool_piece, piece, X_WT[near], pose_to_vector(X_WO))
-            best[near] = np.minimum(best[near], found)
+            pair = ConvexPair(tool_piece, piece, "global")
+            found = pair.query_trajectory(X_WT[near], pose_to_vector(X_WO))
+            best[near] = np.minimum(best[near], found.distance)
     return np.where(best < tolerance_m, best, np.inf)
 
 
@@ -66,15 +67,6 @@ def _find_near(p_WC: np.ndarray, centers_W: np.ndarray, reach: np.ndarray) -> li
     nearest = np.clip(centers_W, low, high)
     near = np.linalg.norm(centers_W - nearest, axis=1) < reach
     return np.flatnonzero(near).tolist()
-
-
-def _query(
-    A: ConvexPolytope, B: ConvexPolytope, X_WA: np.ndarray, X_WB: np.ndarray
-) -> np.ndarray:
-    """Returns the global signed distance (n,) of a pair at each pose."""
-    if len(X_WA) == 0:
-        return np.empty(0)
-    return ConvexPair(A, B, "global").query_trajectory(X_WA, X_WB).distance
 
 
 @dataclass(frozen=True, eq=False)
