@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 
 from pydrake.math import RigidTransform
@@ -211,18 +211,17 @@ def AddHapticLoop(
             )
             stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
             contacts_N_per_m = stiffness.tolist()
-        _connect_base(builder, base)
-        chain: dict[str, OutputPort] = {}
+        sources = _find_sources(base)
         if is_chained:
             joined = base.virtual_coupling.GetOutputPort("motions_and_gains")
             found = base.contact_query.GetOutputPort("contact_chain")
-            chain = {"contact_chain": found, "motions_and_gains": joined}
+            sources |= {"contact_chain": found, "motions_and_gains": joined}
         # The step of the constraint law includes friction.
         is_own = base.penalty is None and effects.friction is not None
         site = EffectSite(
             effects=replace(effects, friction=None) if is_own else effects,
             builder=builder,
-            sources=_find_sources(base) | chain,
+            sources=sources,
             tool=tool,
             tool_mass_kg=tool_dynamics.mass_kg,
             p_TTcm=tool_dynamics.p_TTcm.tolist(),
@@ -232,26 +231,31 @@ def AddHapticLoop(
             springs=find_springs(device, gains, contacts_N_per_m),
         )
         systems = add_effects(site)
-        sources = {"coupling": base.coupling_model, "contact": base.contact_model}
+        wrenches = {"coupling": base.coupling_model, "contact": base.contact_model}
         for name in forces:
             if name == "friction" and is_own:
                 systems = replace(systems, friction=base.haptic_tool)
-                sources[name] = base.haptic_tool.GetOutputPort("friction_model")
+                wrenches[name] = base.haptic_tool.GetOutputPort("friction_model")
             else:
-                sources[name] = getattr(systems, name).GetOutputPort("wrench_model")
-        connect_by_name(builder, base.haptic_tool, sources)
-        connect_by_name(builder, base.haptic_tool, chain)
+                wrenches[name] = getattr(systems, name).GetOutputPort("wrench_model")
+        loop = HapticLoop(**vars(base), effects=systems, wrench_sources=wrenches)
+        # Shading and passivity control come before the systems that remain.
+        sources |= wrenches | {
+            "contacts": loop.contacts,
+            "F_Ho_W_commanded": loop.commanded_wrench,
+        }
+        if is_chained and systems.passivity is None:
+            sources["coupled_motions"] = sources["motions_and_gains"]
         if device.wants_slopes and servo_period_s is None:
-            _add_handle_model(builder, base, sources, chain)
-        loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
-        if loop.penalty is not None:
-            connect_by_name(
-                builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
-            )
-        builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
-        if chain and systems.passivity is None:
-            joined = chain["motions_and_gains"]
-            builder.Connect(joined, device.GetInputPort("coupled_motions"))
+            others = [name for name in wrenches if name != "coupling"]
+            model = HandleModel(others, enable_chain=is_chained)
+            builder.AddNamedSystem("handle_model", model)
+            connect_by_name(builder, model, sources)
+            sources["handle_slopes"] = model.GetOutputPort("handle_slopes")
+        found_by = () if base.penalty is None else vars(base.penalty).values()
+        for system in (device, base.virtual_coupling, base.haptic_tool, *found_by):
+            if system is not None:
+                connect_by_name(builder, system, sources)
     return loop
 
 
@@ -280,58 +284,9 @@ def _find_servo(
     return lambda stepper: start(stepper, X_WT)
 
 
-def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
-    """Connects the systems of every loop between which no effect can come."""
-    sources = {
-        "X_WH": base.device.GetOutputPort("X_WH"),
-        "V_WH": base.device.GetOutputPort("V_WH"),
-    }
-    if base.penalty is None:
-        connect_by_name(builder, base.haptic_tool, sources)
-        return
-    sources["X_WT"] = base.haptic_tool.GetOutputPort("X_WT")
-    sources["V_WT"] = base.haptic_tool.GetOutputPort("V_WT")
-    sources["clusters"] = base.clusters
-    if base.load_shedding is not None:
-        sources["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
-    for system in (base.virtual_coupling, *vars(base.penalty).values()):
-        if system is not None:
-            connect_by_name(builder, system, sources)
-
-
-def _add_handle_model(
-    builder: DiagramBuilder,
-    base: BaseSystems,
-    sources: Mapping[str, OutputPort],
-    chain: Mapping[str, OutputPort],
-) -> None:
-    """Adds the system that models how the wrench changes between ticks."""
-    model = builder.AddNamedSystem(
-        "handle_model",
-        HandleModel(
-            [name for name in sources if name != "coupling"], enable_chain=bool(chain)
-        ),
-    )
-    connect_by_name(builder, model, chain)
-    for output, input in [
-        (base.device.GetOutputPort("X_WH"), model.GetInputPort("X_WH")),
-        (base.haptic_tool.GetOutputPort("X_WT"), model.GetInputPort("X_WT")),
-        *((source, model.GetInputPort(name)) for name, source in sources.items()),
-        (
-            model.GetOutputPort("handle_slopes"),
-            base.device.GetInputPort("handle_slopes"),
-        ),
-    ]:
-        builder.Connect(output, input)
-
-
 def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
-    """Returns the sources for systems of effects, by the names of their inputs."""
-    shedding: dict[str, OutputPort] = {}
-    if base.load_shedding is not None:
-        shedding["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
-    return {
-        **shedding,
+    """Returns the outputs of the base, by the names of the inputs that they feed."""
+    sources = {
         "X_WH": base.device.GetOutputPort("X_WH"),
         "V_WH": base.device.GetOutputPort("V_WH"),
         "X_WT": base.haptic_tool.GetOutputPort("X_WT"),
@@ -342,6 +297,9 @@ def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
         "clusters": base.clusters,
         "contact_wrench": base.contact_wrench,
     }
+    if base.load_shedding is not None:
+        sources["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
+    return sources
 
 
 def make_coupling_gains(

@@ -56,20 +56,9 @@ def add_picture(
             enable_load_shedding=loop.load_shedding is not None,
         ),
     )
-    sources = {
-        "X_WH": loop.device.GetOutputPort("X_WH"),
-        "X_WT": loop.haptic_tool.GetOutputPort("X_WT"),
-        "contacts": loop.contacts,
-        "clusters": loop.clusters,
-        "contact_wrench": loop.contact_wrench,
-        "F_Ho_W_commanded": loop.commanded_wrench,
-    }
-    for system, name in (
-        (loop.effects.friction, "friction_force"),
-        (loop.load_shedding, "load_shedding"),
-    ):
-        if system is not None:
-            sources[name] = system.GetOutputPort(name)
+    sources = loop.outputs
+    if loop.load_shedding is not None:
+        sources["load_shedding"] = loop.load_shedding.GetOutputPort("load_shedding")
     connect_by_name(builder, visualizer, sources)
     return visualizer
 
@@ -115,20 +104,10 @@ def AddTickLog(
             f"recorder: its header has ticks of {recorder.period_s:g} s, and those of"
             f" the loop are of {period_s:g} s: make the header of the loop's scene"
         )
-    device, tool = loop.device, loop.haptic_tool
-    sources = {
-        "X_WH": device.GetOutputPort("X_WH"),
-        "V_WH": device.GetOutputPort("V_WH"),
-        "F_Ho_W_commanded": loop.commanded_wrench,
-        "F_Ho_W_rendered": device.GetOutputPort("F_Ho_W_rendered"),
-        "X_WT": tool.GetOutputPort("X_WT"),
-        "V_WT": tool.GetOutputPort("V_WT"),
-        "status": device.GetOutputPort("status"),
-        "contacts": loop.found_contacts,
-        "clusters": loop.clusters,
-    }
-    if device.HasOutputPort("reading"):
-        sources["reading"] = device.GetOutputPort("reading")
+    # A log has the contacts as they were found, without shading.
+    sources = loop.outputs | {"contacts": loop.found_contacts}
+    if loop.device.HasOutputPort("reading"):
+        sources["reading"] = loop.device.GetOutputPort("reading")
     sink = builder.AddNamedSystem(
         "tick_log_sink",
         TickLogSink(recorder, period_s, has_reading="reading" in sources),
