@@ -28,7 +28,7 @@ from drake_haptics.loop.effects import (
     find_springs,
 )
 from drake_haptics.loop.haptic_loop import BaseSystems, HapticLoop
-from drake_haptics.scene.contact_law import check_constraint_law, is_constraint
+from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
@@ -134,7 +134,9 @@ def AddHapticLoop(
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
-    check_parameters(contact, dict(enumerate(materials)), effects, coupling)
+    sheds_load = load_shedding is not None
+    places = {f"materials[{i}]": item for i, item in enumerate(materials)}
+    check_parameters(contact, places, effects, coupling, sheds_load=sheds_load)
     if servo_period_s is not None:
         check_positive(period_s=period_s, servo_period_s=servo_period_s)
         check_servo_rate(
@@ -147,19 +149,12 @@ def AddHapticLoop(
         )
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
-    sheds_load = load_shedding is not None
     is_chained = in_one_call and not sheds_load and can_chain(objects, contact)
     with whole_or_nothing(builder):
         if load_shedding is not None:
             builder.AddNamedSystem("load_shedding", load_shedding)
         builder.AddNamedSystem("device", device)
         if is_constraint(contact):
-            check_constraint_law(
-                contact,
-                effects,
-                sheds_load=sheds_load,
-                materials={f"materials[{i}]": item for i, item in enumerate(materials)},
-            )
             from drake_haptics.systems.tool.constraint_tool_step import (
                 ConstraintToolStep,
             )

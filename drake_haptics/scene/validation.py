@@ -76,6 +76,7 @@ def check_values(scene: Scene) -> None:
     _check_pose(scene.tool.grasp, "tool.grasp")
     require(bool(scene.environment), "environment", "needs at least one object")
     names = [item.name for item in scene.environment]
+    materials: dict[str, Material] = {}
     for i, item in enumerate(scene.environment):
         where = f"environment[{i}]"
         require(item.name.isidentifier(), f"{where}.name", "must be a plain name")
@@ -83,8 +84,11 @@ def check_values(scene: Scene) -> None:
         require(bool(item.mesh), f"{where}.mesh", "is missing")
         _check_shape(item, where)
         _check_pose(item.pose, f"{where}.pose")
-        _check_material(item.material, f"{where}.material", scene.effects)
-    _check_contact(scene.contact)
+        materials[f"{where}.material"] = item.material
+    sheds_load = scene.device.tick_budget_us is not None
+    check_parameters(
+        scene.contact, materials, scene.effects, scene.coupling, sheds_load=sheds_load
+    )
     _check_rate(scene.device, "rate_hz")
     _check_rate(scene.device, "servo_rate_hz")
     if scene.device.servo_rate_hz is not None:
@@ -96,22 +100,8 @@ def check_values(scene: Scene) -> None:
         )
     if scene.contact.query_rate_hz is not None:
         check_query_rate(scene.contact.query_rate_hz, scene.device.rate_hz)
-    _check_effects(scene.effects)
-    require_none_negative(
-        scene.coupling, "coupling", [f.name for f in dataclasses.fields(scene.coupling)]
-    )
     require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
     _check_tick_budget(scene.device)
-    if is_constraint(scene.contact):
-        check_constraint_law(
-            scene.contact,
-            scene.effects,
-            sheds_load=scene.device.tick_budget_us is not None,
-            materials={
-                f"environment[{i}].material": item.material
-                for i, item in enumerate(scene.environment)
-            },
-        )
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")
     _check_twin(scene.device.twin)
@@ -129,37 +119,48 @@ def check_rendering(
     Raises:
         SceneError: A value is out of range, or has no effect under this law.
     """
-    check_parameters(contact, materials, effects, coupling)
-    if is_constraint(contact):
-        places = {f"materials[{name!r}]": item for name, item in materials.items()}
-        check_constraint_law(contact, effects, sheds_load=False, materials=places)
-        require(
-            effects.friction is None,
-            "effects.friction",
-            "is not for a body of a plant under contact.law: constraint, whose proxy"
-            " has no friction: take it out, or take contact.law: penalty",
-        )
+    places = {f"materials[{name!r}]": item for name, item in materials.items()}
+    check_parameters(contact, places, effects, coupling)
+    require(
+        effects.friction is None or not is_constraint(contact),
+        "effects.friction",
+        "is not for a body of a plant under contact.law: constraint, whose proxy"
+        " has no friction: take it out, or take contact.law: penalty",
+    )
 
 
 def check_parameters(
     contact: ContactParameters,
-    materials: Mapping[str, Material] | Mapping[int, Material],
+    materials: Mapping[str, Material],
     effects: Effects,
     coupling: CouplingParameters | None,
+    *,
+    sheds_load: bool = False,
 ) -> None:
-    """Checks each of the parameters of contact, effects and coupling.
+    """Checks the parameters of contact, effects and coupling.
+
+    Args:
+        contact: Parameters of contact.
+        materials: Materials, by their keys for messages.
+        effects: Effects.
+        coupling: Gains of the coupling; None without one.
+        sheds_load: Whether slow ticks drop work.
 
     Raises:
-        SceneError: A value is out of range, or a material refers to an effect that is
-            not there.
+        SceneError: A value is out of range or has no effect under this law, or a
+            material refers to an effect that is not there.
     """
     _check_contact(contact)
     _check_effects(effects)
-    for name, material in materials.items():
-        _check_material(material, f"materials[{name!r}]", effects)
+    for where, material in materials.items():
+        _check_material(material, where, effects)
     if coupling is not None:
         keys = [f.name for f in dataclasses.fields(coupling)]
         require_none_negative(coupling, "coupling", keys)
+    if is_constraint(contact):
+        check_constraint_law(
+            contact, effects, sheds_load=sheds_load, materials=materials
+        )
 
 
 def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
