@@ -247,26 +247,23 @@ def ConnectMovingObject(
         ValueError: There is no such object, it does not move, or it is connected
             already.
     """
-    parts: list[System | None] = [*vars(loop.effects).values()]
-    if loop.penalty is None:
-        parts.append(loop.haptic_tool)
-    else:
-        parts += [loop.penalty_force, loop.pose_sampler, loop.contact_extrapolator]
-        if loop.pose_sampler is None:
-            parts.append(loop.contact_query)
-    # Under the constraint law one system is several of these parts.
-    systems = [part for part in dict.fromkeys(parts) if part is not None]
+    parts: list[System | None] = [loop.haptic_tool, *vars(loop.effects).values()]
+    if loop.penalty is not None:
+        parts += vars(loop.penalty).values()
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
+    # Under the constraint law one system is several of these parts.
     inputs = [
-        (sources[port.get_name()], port)
-        for system in systems
+        port
+        for system in dict.fromkeys(parts)
+        if system is not None
         for port in map(system.get_input_port, range(system.num_input_ports()))
         if port.get_name() in sources
     ]
     if not inputs:
         raise ValueError(f"name: no object that moves is called {name!r}")
-    # Drake may end the process for a second connection.
-    if any(builder.IsConnectedOrExported(input) for _, input in inputs):
+    # A sampler feeds the query. Drake may end the process for a second connection.
+    free = [port for port in inputs if not builder.IsConnectedOrExported(port)]
+    if not free:
         raise ValueError(f"name: the motion of {name!r} is connected already")
-    for output, input in inputs:
-        builder.Connect(output, input)
+    for port in free:
+        builder.Connect(sources[port.get_name()], port)
