@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from pydrake.common.yaml import yaml_load_typed
 from pydrake.geometry import Role, SceneGraph
@@ -127,21 +128,10 @@ def ApplyHapticRenderingConfig(
     require_kinds(config=(config, HapticRenderingConfig))
     require_kinds(X_HT=(config.X_HT, Pose))
     require(config.role in _ROLES, "role", f"must be one of {', '.join(_ROLES)}")
+    arguments: dict[str, Any] = vars(config) | {
+        "role": _ROLES[config.role],
+        "X_HT": config.X_HT.to_rigid_transform(),
+    }
     return AddHapticRendering(
-        builder,
-        plant,
-        scene_graph,
-        config.tool_body,
-        environment=config.environment,
-        role=_ROLES[config.role],
-        chord_error_m=config.chord_error_m,
-        contact=config.contact,
-        materials=config.materials,
-        effects=config.effects,
-        coupling=config.coupling,
-        device=device,
-        X_HT=config.X_HT.to_rigid_transform(),
-        period_s=config.period_s,
-        name=config.name,
-        progress=progress,
+        builder, plant, scene_graph, **arguments, device=device, progress=progress
     )
