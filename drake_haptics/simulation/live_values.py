@@ -23,7 +23,24 @@ from drake_haptics.systems.contact.contact_clustering import (
     ClusteringRule,
 )
 
-# Keys of effects: label, unit, smallest and largest value to be offered.
+# Keys of coupling and contact: label, unit, smallest and largest value to be offered.
+_OF_LOOP = {
+    "coupling.stiffness_N_per_m": ("Stiffness", "N/m", 50.0, 5e3),
+    "coupling.damping_Ns_per_m": ("Damping", "N·s/m", 0.0, 20.0),
+    "coupling.rotational_stiffness_Nm_per_rad": (
+        *("Rotational stiffness", "N·m/rad"),
+        *(0.05, 10.0),
+    ),
+    "coupling.rotational_damping_Nms_per_rad": (
+        *("Rotational damping", "N·m·s/rad"),
+        *(0.0, 0.04),
+    ),
+    "contact.stiffness_N_per_m": ("Stiffness", "N/m", 100.0, 1e5),
+    "contact.damping_Ns_per_m": ("Damping", "N·s/m", 0.0, 50.0),
+    "contact.tolerance_m": ("Tolerance", "m", 1e-4, 1e-2),
+    "contact.cluster_size_m": ("Cluster size", "m", 5e-4, 5e-2),
+}
+# Those of effects.
 _OF_EFFECTS = {
     "shading.crease_angle_deg": ("Crease angle", "°", 0.0, 90.0),
     "friction.coefficient": ("Friction coefficient", "", 0.0, 1.0),
@@ -84,41 +101,17 @@ def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
     the cluster size without an octree; under `contact.law: constraint` contact has
     none.
     """
-    found = [
-        _make_key(scene, "coupling.stiffness_N_per_m", "Stiffness", "N/m", 50.0, 5e3),
-        _make_key(scene, "coupling.damping_Ns_per_m", "Damping", "N·s/m", 0.0, 20.0),
-        _make_key(
-            scene,
-            "coupling.rotational_stiffness_Nm_per_rad",
-            "Rotational stiffness",
-            "N·m/rad",
-            0.05,
-            10.0,
-        ),
-        _make_key(
-            scene,
-            "coupling.rotational_damping_Nms_per_rad",
-            "Rotational damping",
-            "N·m·s/rad",
-            0.0,
-            0.04,
-        ),
-    ]
-    if is_constraint(scene.contact):
-        return tuple(found)
-    materials = [item.material for item in scene.environment]
-    if any(material.stiffness_N_per_m is None for material in materials):
-        key = "contact.stiffness_N_per_m"
-        found.append(_make_key(scene, key, "Stiffness", "N/m", 100.0, 1e5))
-    if any(material.damping_Ns_per_m is None for material in materials):
-        key = "contact.damping_Ns_per_m"
-        found.append(_make_key(scene, key, "Damping", "N·s/m", 0.0, 50.0))
-    key = "contact.tolerance_m"
-    found.append(_make_key(scene, key, "Tolerance", "m", 1e-4, 1e-2))
-    if scene.contact.clustering == "octree":
-        key = "contact.cluster_size_m"
-        found.append(_make_key(scene, key, "Cluster size", "m", 5e-4, 5e-2))
-    return tuple(found)
+    is_left_out = {
+        "contact.stiffness_N_per_m": _is_overridden(scene, "stiffness_N_per_m"),
+        "contact.damping_Ns_per_m": _is_overridden(scene, "damping_Ns_per_m"),
+        "contact.cluster_size_m": scene.contact.clustering != "octree",
+    }
+    return tuple(
+        _make_key(scene, key, *range_)
+        for key, range_ in _OF_LOOP.items()
+        if not is_left_out.get(key, False)
+        and not (key.startswith("contact.") and is_constraint(scene.contact))
+    )
 
 
 def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
@@ -128,18 +121,21 @@ def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
     `drake_haptics.transfer_context`. A coefficient that every material overrides is
     left out.
     """
-    materials = [item.material for item in scene.environment]
-    idle = {
-        "friction.coefficient": all(
-            material.friction_coefficient is not None for material in materials
-        )
-    }
     return tuple(
         _make_key(scene, f"effects.{key}", *range_)
         for key, range_ in _OF_EFFECTS.items()
         if getattr(scene.effects, key.partition(".")[0]) is not None
-        and not idle.get(key, False)
+        and not (
+            key == "friction.coefficient"
+            and _is_overridden(scene, "friction_coefficient")
+        )
     )
+
+
+def _is_overridden(scene: Scene, name: str) -> bool:
+    """Returns whether the materials of all objects give a value."""
+    materials = (item.material for item in scene.environment)
+    return all(getattr(material, name) is not None for material in materials)
 
 
 def _make_key(
