@@ -21,9 +21,15 @@ from drake_haptics.analysis.held_loop import (
     analyze_held_scene,
 )
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
+from drake_haptics.analysis.mode_plot import plot_poles
 from drake_haptics.analysis.modes import Mode, find_modes
 from drake_haptics.analysis.passivity import Passivity, calc_passivity
 from drake_haptics.analysis.sampled_linearization import SampledLinearization
+from drake_haptics.analysis.stability_sheet import (
+    plot_limits,
+    plot_usage,
+    put_legend_below,
+)
 from drake_haptics.analysis.stiffness_limits import (
     Against,
     Kind,
@@ -42,6 +48,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, float], None]
 
+_SIZE_INCH = (13.0, 11.0)
 # The smallest stiffness of the map, as a share of the largest.
 _LOWEST_SHARE = 0.02
 # The largest stiffness of the map, as a multiple of the largest limit and gain.
@@ -106,20 +113,33 @@ class SceneStability:
         return bool(self.damping_usage.max() <= 1.0)
 
     def plot(self) -> Figure:
-        """Draws map, poles, passivity and limits on one sheet."""
-        from drake_haptics.analysis.stability_sheet import draw_sheet
+        """Draws map, poles, passivity and limits on a new figure, without a window."""
+        from matplotlib.figure import Figure
 
-        coupling = self.scene.coupling
-        return draw_sheet(
-            self.scene.description,
-            self.linearization,
-            self.limits,
-            frequencies_Hz=self.felt.frequencies_Hz,
-            damping_usage=self.damping_usage,
-            map=self.map,
-            bounds=HeldBounds(self.handle.damping_Ns_per_m, self.period_s),
-            gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
-        )
+        figure = Figure(figsize=_SIZE_INCH, layout="constrained")
+        if self.map is None:
+            panels = figure.subplot_mosaic([["poles", "usage"], ["limits", "limits"]])
+        else:
+            panels = figure.subplot_mosaic([["map", "poles"], ["usage", "limits"]])
+            axes, coupling = panels["map"], self.scene.coupling
+            self.map.plot(
+                axes,
+                bounds=HeldBounds(self.handle.damping_Ns_per_m, self.period_s),
+                gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
+            )
+            rows, columns = self.map.spectral_radius.shape
+            axes.set_title(
+                f"couplings stable in this contact, of {columns} × {rows};"
+                " dashed: against a rigid wall"
+            )
+            axes.set_xlabel("stiffness K, N/m")
+            axes.set_ylabel("damping B, N·s/m")
+            put_legend_below(axes)
+        plot_poles(self.linearization, panels["poles"])
+        plot_usage(self.felt.frequencies_Hz, self.damping_usage, panels["usage"])
+        plot_limits(self.limits, panels["limits"])
+        figure.suptitle(self.scene.description)
+        return figure
 
     def to_dict(self) -> dict[str, Any]:
         """Returns all results, ready for JSON."""
@@ -270,9 +290,7 @@ def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     # The force begins at the tolerance; under the constraint law all contacts push.
     tolerance_m = math.inf
     if parts.penalty is not None:
-        clustering = parts.penalty.contact_clustering
-        rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
-        tolerance_m = rule.tolerance_m
+        tolerance_m = parts.penalty.read_tolerance(root)
     pushing = contacts.distance < tolerance_m
     wrench = diagram.GetOutputPort("F_To_W").Eval(root)
     return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))
