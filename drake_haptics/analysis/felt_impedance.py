@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable
-from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.delay_margin import find_shown_wrench
 from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.bounds.held_handle import (
+    calc_handle_jacobian,
+    find_arm,
+    read_joint_damping,
+)
 from drake_haptics.common.one_line import one_line
-from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 
@@ -68,7 +69,10 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
     linear = loop.linearization
     n_c = loop.context.num_continuous_states()
     n_q = n_c // 2
-    J_WH, joint_damping = _read_arm(loop)
+    scene = loop.haptic.scene
+    plant, handle = find_arm(scene, loop.haptic.loop.device)
+    context = plant.GetMyContextFromRoot(loop.context)
+    J_WH = calc_handle_jacobian(plant, handle, context)
     try:
         per_displacement = np.linalg.inv(J_WH)
     except np.linalg.LinAlgError as error:
@@ -87,7 +91,7 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
     C, D = -A[shown], -B[shown]
     antisymmetric = _calc_antisymmetric_stiffness(A, B, C, D)
     torque = linear.state[n_c:][shown][:3]
-    grip = HAND_GRIPS[loop.haptic.scene.hand.grip]
+    grip = HAND_GRIPS[scene.hand.grip]
     of_hand = np.zeros(6)
     if grip is not None:
         of_hand[:3] = grip.rotational_damping_Nms_per_rad
@@ -99,28 +103,11 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
         D=D - antisymmetric,
         period_s=T,
         curl=antisymmetric - _calc_torque_part(torque),
-        handle_damping=per_displacement.T @ np.diag(joint_damping) @ per_displacement
+        handle_damping=per_displacement.T
+        @ np.diag(read_joint_damping(plant))
+        @ per_displacement
         + np.diag(of_hand),
     )
-
-
-def _read_arm(loop: HeldLoop) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the handle's Jacobian (6, 6) and the damping of the joints (6,)."""
-    arm = loop.haptic.loop.device.GetSubsystemByName("simulated_arm")
-    plant: MultibodyPlant = arm.GetSubsystemByName("arm")
-    context: Context = plant.GetMyContextFromRoot(loop.context)
-    preset = load_device_preset(loop.haptic.scene.device.preset)
-    handle = plant.GetBodyByName(preset.handle_link)
-    J_WH = plant.CalcJacobianSpatialVelocity(
-        context,
-        JacobianWrtVariable.kV,
-        handle.body_frame(),
-        np.zeros(3),
-        plant.world_frame(),
-        plant.world_frame(),
-    )
-    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
-    return J_WH, np.concatenate([joint.default_damping_vector() for joint in joints])
 
 
 def _calc_antisymmetric_stiffness(

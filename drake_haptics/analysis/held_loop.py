@@ -33,7 +33,6 @@ from drake_haptics.analysis.stability_limit import (
 )
 from drake_haptics.common.one_line import one_line
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import (
     CouplingParameters,
     HandPathParameters,
@@ -41,26 +40,14 @@ from drake_haptics.scene.schema import (
     Waypoint,
 )
 from drake_haptics.simulation.live_values import write_live_values
-from drake_haptics.simulation.transfer_state import release_diagram
+from drake_haptics.simulation.transfer_state import move_handle, release_diagram
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
-from drake_haptics.systems.arm.simulated_arm import (
-    UnreachableError,
-    solve_arm_positions,
-)
+from drake_haptics.systems.arm.simulated_arm import UnreachableError
 
 # Largest angle of a rotational spring, rad; beyond half a turn it would pull back.
 _LARGEST_TWIST = 2.5
 # Loads smaller than this need no spring to hold them, N and N·m.
 _NO_LOAD = 1e-9
-
-
-@dataclass(frozen=True)
-class _Aim:
-    """Poses of handle and hand, and the wrench on the handle."""
-
-    X_WH: RigidTransform
-    X_WP: RigidTransform
-    F_Ho_W_commanded: np.ndarray
 
 
 def build_with_same_load(
@@ -81,8 +68,8 @@ def build_with_same_load(
         SceneError: The hand would leave the device's workspace.
     """
     coupling = coupling or held.scene.coupling
-    aim = _aim(held, coupling)
-    at = to_scene_pose(aim.X_WP)
+    X_WH, X_WP, F_Ho_W = _aim(held, coupling)
+    at = to_scene_pose(X_WP)
     path = HandPathParameters(waypoints=[Waypoint(0.0, at.position_m, at.rpy_deg)])
     scene = replace(
         held.scene, coupling=coupling, hand=replace(held.scene.hand, path=path)
@@ -92,12 +79,23 @@ def build_with_same_load(
     context.SetTimeStateAndParametersFrom(held.context)
     # Gains are parameters, too, so those of the held scene were just copied.
     write_live_values(haptic, context, scene)
-    _set_handle(haptic, scene, context, aim)
+    try:
+        move_handle(haptic, context, X_WH)
+    except UnreachableError as error:
+        raise ValueError(f"to press as before: {error}") from error
+    hold = haptic.loop.device.GetSubsystemByName("rendered_force_hold")
+    hold.GetMyMutableContextFromRoot(context).SetDiscreteState(np.append(F_Ho_W, 0.0))
     return haptic, context
 
 
-def _aim(held: HeldScene, coupling: CouplingParameters) -> _Aim:
-    """Solves the springs of coupling and hand for the load on the tool."""
+def _aim(
+    held: HeldScene, coupling: CouplingParameters
+) -> tuple[RigidTransform, RigidTransform, np.ndarray]:
+    """Solves the springs of coupling and hand for the load on the tool.
+
+    Returns:
+        Poses of handle and hand, and the wrench on the handle.
+    """
     torque, force = held.F_To_W[:3], held.F_To_W[3:]
     X_HT = held.scene.tool.grasp.to_rigid_transform()
     X_Wheld = _stretch(
@@ -120,7 +118,7 @@ def _aim(held: HeldScene, coupling: CouplingParameters) -> _Aim:
         grip.stiffness_N_per_m if grip else 0.0,
         "hand",
     )
-    return _Aim(X_WH, X_Wwanted @ X_HT, -np.concatenate([torque_on_hand, force]))
+    return X_WH, X_Wwanted @ X_HT, -np.concatenate([torque_on_hand, force])
 
 
 def _stretch(
@@ -151,23 +149,6 @@ def _stretch(
     return RigidTransform(
         turn @ X_WB.rotation(), X_WB.translation() + force / (stiffness or 1.0)
     )
-
-
-def _set_handle(haptic: HapticDiagram, scene: Scene, root: Context, aim: _Aim) -> None:
-    """Moves the arm, and sets the wrench that the device renders."""
-    device = haptic.loop.device
-    plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
-    context = plant.GetMyMutableContextFromRoot(root)
-    handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
-    try:
-        q = solve_arm_positions(plant, handle, aim.X_WH, plant.GetPositions(context))
-    except UnreachableError as error:
-        raise ValueError(f"to press as before: {error}") from error
-    plant.SetPositions(context, q)
-    plant.SetVelocities(context, np.zeros(len(q)))
-    hold = device.GetSubsystemByName("rendered_force_hold")
-    shown = np.append(aim.F_Ho_W_commanded, 0.0)
-    hold.GetMyMutableContextFromRoot(root).SetDiscreteState(shown)
 
 
 # An oscillation of 250 Hz advances by 0.3 rad in a step of the third-order integrator.

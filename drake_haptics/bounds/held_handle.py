@@ -124,8 +124,7 @@ def calc_scene_handle(
         device: Simulated device of the scene, from `make_simulated_device`.
         root: Context with the arm's position. Defaults to its default angles.
     """
-    plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
-    handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
+    plant, handle = find_arm(scene, device)
     return calc_held_handle(
         plant,
         handle,
@@ -133,6 +132,13 @@ def calc_scene_handle(
         p_HQ=np.array(scene.tool.grasp.position_m),
         context=None if root is None else plant.GetMyContextFromRoot(root),
     )
+
+
+def find_arm(scene: Scene, device: HapticDevice) -> tuple[MultibodyPlant, RigidBody]:
+    """Returns the arm of a scene's simulated device, and the body that is held."""
+    plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
+    preset = load_device_preset(scene.device.preset)
+    return plant, plant.GetBodyByName(preset.handle_link)
 
 
 def calc_held_handle(
@@ -158,10 +164,9 @@ def calc_held_handle(
         context: Context of the plant. Defaults to its default context.
     """
     context = context or plant.CreateDefaultContext()
-    J_WH = _calc_jacobian(plant, handle, context, np.zeros(3))
-    J_WQ = _calc_jacobian(plant, handle, context, np.zeros(3) if p_HQ is None else p_HQ)
-    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
-    damping = np.diag(np.concatenate([j.default_damping_vector() for j in joints]))
+    J_WH = calc_handle_jacobian(plant, handle, context)
+    J_WQ = J_WH if p_HQ is None else calc_handle_jacobian(plant, handle, context, p_HQ)
+    damping = np.diag(read_joint_damping(plant))
     stiffness = np.zeros_like(damping)
     if grip is not None:
         dampers = [grip.rotational_damping_Nms_per_rad] * 3
@@ -181,15 +186,31 @@ def calc_held_handle(
     )
 
 
-def _calc_jacobian(
-    plant: MultibodyPlant, handle: RigidBody, context: Context, p_HQ: np.ndarray
+def read_joint_damping(plant: MultibodyPlant) -> np.ndarray:
+    """Returns the damping of the joints of an arm, (n,), N·m·s/rad."""
+    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
+    return np.concatenate([joint.default_damping_vector() for joint in joints])
+
+
+def calc_handle_jacobian(
+    plant: MultibodyPlant,
+    handle: RigidBody,
+    context: Context,
+    p_HQ: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Returns J (6, n): spatial velocity of the handle at Q in the world, by joints."""
+    """Returns J (6, n): spatial velocity of the handle at Q in the world, by joints.
+
+    Args:
+        plant: The arm.
+        handle: The body that is held.
+        context: Context of the plant.
+        p_HQ: The point Q of the handle, (3,), m. Defaults to its origin.
+    """
     return plant.CalcJacobianSpatialVelocity(
         context,
         JacobianWrtVariable.kV,
         handle.body_frame(),
-        p_HQ,
+        np.zeros(3) if p_HQ is None else p_HQ,
         plant.world_frame(),
         plant.world_frame(),
     )

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, Diagram, System
 
+from drake_haptics.bounds.held_handle import find_arm
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.simulated_arm import (
     UnreachableError,
     solve_arm_positions,
@@ -54,9 +55,11 @@ def transfer_context(
     is_reached = True
     if not _has_same_device(old, new):
         restarted.append(new.loop.device)
-        is_reached = _take_handle(new, context, find_handle(old, old_context))
-    if not is_reached:
-        restarted.append(new.loop.haptic_tool)
+        try:
+            move_handle(new, context, find_handle(old, old_context))
+        except UnreachableError:
+            is_reached = False
+            restarted.append(new.loop.haptic_tool)
     # A new system may read states of others at its initialization.
     copied = old.diagram, old_context, new.diagram, context, restarted
     _copy_states(*copied)
@@ -109,24 +112,27 @@ def _find_arm(haptic: HapticDiagram) -> MultibodyPlant | None:
     device = haptic.loop.device
     if not device.HasSubsystemNamed("simulated_arm"):
         return None
-    return device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
+    return find_arm(haptic.scene, device)[0]
 
 
-def _take_handle(haptic: HapticDiagram, root: Context, X_WH: RigidTransform) -> bool:
-    """Moves the handle of a simulated arm to a pose; returns whether it can."""
-    arm = _find_arm(haptic)
-    if arm is None:
-        return True
-    preset = load_device_preset(haptic.scene.device.preset)
+def move_handle(haptic: HapticDiagram, root: Context, X_WH: RigidTransform) -> None:
+    """Moves the handle of a simulated arm to a pose, at rest.
+
+    Args:
+        haptic: Diagram with the arm. The handle of any other device stays.
+        root: Context of the diagram.
+        X_WH: Pose of the handle in the world.
+
+    Raises:
+        UnreachableError: The arm cannot take that pose.
+    """
+    if _find_arm(haptic) is None:
+        return
+    arm, handle = find_arm(haptic.scene, haptic.loop.device)
     context = arm.GetMyMutableContextFromRoot(root)
-    try:
-        q = solve_arm_positions(
-            arm, arm.GetBodyByName(preset.handle_link), X_WH, arm.GetPositions(context)
-        )
-    except UnreachableError:
-        return False
+    q = solve_arm_positions(arm, handle, X_WH, arm.GetPositions(context))
     arm.SetPositions(context, q)
-    return True
+    arm.SetVelocities(context, np.zeros(len(q)))
 
 
 def _copy_states(

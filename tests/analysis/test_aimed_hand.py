@@ -89,6 +89,6 @@ def test_an_arm_that_does_not_reach_is_an_error(monkeypatch):
     def refuse(*_):
         raise UnreachableError("the arm is too short")
 
-    monkeypatch.setattr(held_loop, "solve_arm_positions", refuse)
+    monkeypatch.setattr(held_loop, "move_handle", refuse)
     with pytest.raises(ValueError, match="to press as before: the arm is too short"):
         build_with_same_load(load_held("hammer_block"))
