@@ -9,7 +9,6 @@ from functools import partial
 
 from pydrake.geometry import (
     CollisionFilterDeclaration,
-    GeometryId,
     GeometrySet,
     Role,
     SceneGraph,
@@ -200,22 +199,21 @@ def exclude_own_contact(
         Names of other bodies that the plant lets the tool touch.
     """
     inspector = scene_graph.model_inspector()
-    ours: list[GeometryId] = []
-    for body in environment:
-        ours += find_body_geometries(plant, inspector, body)
+    own = find_body_geometries(plant, inspector, tool)
+    others = [
+        shape
+        for body in environment
+        for shape in find_body_geometries(plant, inspector, body)
+    ]
     scene_graph.collision_filter_manager().Apply(
         CollisionFilterDeclaration().ExcludeBetween(
-            GeometrySet(find_body_geometries(plant, inspector, tool)), GeometrySet(ours)
+            GeometrySet(own), GeometrySet(others)
         )
     )
-    return [
-        body.name()
-        for body in _all_bodies(plant)
-        if body.index() != tool.index()
-        and find_body_geometries(plant, inspector, body)
-        and find_body_geometries(plant, inspector, tool)
-        and not _is_filtered(plant, inspector, tool, body)
-    ]
+    if not own:
+        return []
+    touching = find_environment(plant, inspector, tool, Role.kProximity)
+    return [body.name() for body in touching]
 
 
 def _all_bodies(plant: MultibodyPlant) -> list[RigidBody]:

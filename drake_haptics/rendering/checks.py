@@ -51,7 +51,7 @@ def check_rendering_stiffness(
     if plant.time_step() == 0.0:
         return []
     found = []
-    on_tool = _calc_mobility(plant, tool)
+    on_tool = calc_mobility(tool)
     for item, material in zip(objects, materials, strict=True):
         stiffness, damping = material.stiffness_N_per_m, material.damping_Ns_per_m
         found.append(
@@ -59,10 +59,7 @@ def check_rendering_stiffness(
                 f"contact of {tool.name!r} with {item.name!r}",
                 contact.stiffness_N_per_m if stiffness is None else stiffness,
                 contact.damping_Ns_per_m if damping is None else damping,
-                [
-                    on_tool,
-                    0.0 if item.X_WB is not None else _calc_mobility(plant, item),
-                ],
+                [on_tool, calc_mobility(item)],
                 plant.time_step(),
             )
         )
@@ -71,9 +68,12 @@ def check_rendering_stiffness(
     return [sentence for sentence in found if sentence]
 
 
-def _calc_mobility(plant: MultibodyPlant, item: RenderedBody) -> float:
+def calc_mobility(item: RenderedBody) -> float:
+    """Returns the largest mobility of points of a body, 1/kg; 0 if it cannot move."""
+    if item.X_WB is not None:
+        return 0.0
     return calc_largest_point_mobility(
-        plant, item.body, np.asarray(item.pieces.vertices)
+        item.body.GetParentPlant(), item.body, np.asarray(item.pieces.vertices)
     )
 
 

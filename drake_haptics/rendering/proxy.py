@@ -16,12 +16,10 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 
 from drake_haptics._core import CouplingGains, RigidToolDynamics
-from drake_haptics.bounds.explicit_step import (
-    calc_largest_point_mobility,
-    calc_spatial_mobility,
-)
+from drake_haptics.bounds.explicit_step import calc_spatial_mobility
 from drake_haptics.loop.contact import find_skins
 from drake_haptics.rendering.bodies import RenderedBody
+from drake_haptics.rendering.checks import calc_mobility
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Material
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
@@ -103,12 +101,7 @@ def calc_apparent_inertia(
     # A body that cannot turn, or can only turn, has its own size as radius of gyration.
     square_m2 = moving / turning if moving and turning else size_m**2
     moving = max(moving, turning * square_m2)
-    giving = max(
-        calc_largest_point_mobility(plant, item.body, np.asarray(item.pieces.vertices))
-        if item.X_WB is None
-        else 0.0
-        for item in objects
-    )
+    giving = max(map(calc_mobility, objects))
     mass = 1.0 / (2.0 * moving + giving)
     return mass, mass * square_m2
 
