@@ -88,14 +88,6 @@ def local_processes(most_useful: int) -> Iterator[Executor]:
         pool.shutdown()
 
 
-def explain_broken_pool() -> str:
-    """Returns a message about workers that have died."""
-    return (
-        "a worker process died: the system may have ended it for its memory, or"
-        " compiled code may have crashed (stderr has what the workers said)"
-    )
-
-
 def _start_worker(parent: int) -> None:
     """Makes this process end soon after its parent."""
 

@@ -15,11 +15,7 @@ from typing import Any
 
 from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
 from drake_haptics.analysis.jobs.exact_json import from_exact_json, to_exact_json
-from drake_haptics.analysis.jobs.pool import (
-    SerialExecutor,
-    explain_broken_pool,
-    local_processes,
-)
+from drake_haptics.analysis.jobs.pool import SerialExecutor, local_processes
 from drake_haptics.analysis.jobs.store import StudyFunction, StudyStore
 from drake_haptics.common.value_checks import check_at_least
 
@@ -203,8 +199,12 @@ def run_study(
         except KeyboardInterrupt:
             raise KeyboardInterrupt(study.tell("Stopped.")) from None
         except BrokenExecutor as error:
-            why = explain_broken_pool()
-            raise study.make_error(f"The executor broke: {why}.") from error
+            why = (
+                "The executor broke: a worker process died: the system may have ended"
+                " it for its memory, or compiled code may have crashed (stderr has what"
+                " the workers said)."
+            )
+            raise study.make_error(why) from error
         except CancelledError as error:
             why = "The executor was closed, or canceled what it had."
             raise study.make_error(why) from error
