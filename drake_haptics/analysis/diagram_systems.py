@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import QuaternionFloatingJoint
-from pydrake.systems.framework import (
-    Context,
-    Context_,
-    Diagram,
-    Diagram_,
-    System,
-    System_,
-)
+from pydrake.systems.framework import Context, Context_, System, System_
 
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.subsystems import walk_leaves, walk_systems
 
 _TIMING = re.compile(r"\(([\d.e+-]+),([\d.e+-]+)\)")
-_DIAGRAMS = (Diagram, Diagram_[AutoDiffXd])
 
 
 @dataclass(frozen=True, order=True)
@@ -37,19 +29,6 @@ class Timing:
     period_s: float
     offset_s: float
     system: str
-
-
-def walk_systems(system: System) -> Iterator[System]:
-    """Yields a system and, if it is a Diagram, all systems in it, depth first."""
-    yield system
-    if isinstance(system, _DIAGRAMS):
-        for part in system.GetSystems():
-            yield from walk_systems(part)
-
-
-def walk_leaves(system: System) -> Iterator[System]:
-    """Yields the leaf systems, in the order of Drake's states."""
-    return (part for part in walk_systems(system) if not isinstance(part, _DIAGRAMS))
 
 
 def calc_path(root: System, system: System) -> str:

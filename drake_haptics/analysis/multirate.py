@@ -28,7 +28,6 @@ from drake_haptics.analysis.diagram_systems import (
     Timing,
     find_state_layout,
     find_timings,
-    walk_leaves,
 )
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.modes import PeriodMap, check_return
@@ -39,6 +38,7 @@ from drake_haptics.analysis.preconditions import (
     explain_drake_errors,
 )
 from drake_haptics.analysis.sampled_map import extract_gradient, get_state, set_state
+from drake_haptics.common.subsystems import walk_leaves
 from drake_haptics.common.value_checks import check_positive
 
 # Periods are taken for fractions of a second with denominators up to this.

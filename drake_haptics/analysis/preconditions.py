@@ -22,7 +22,8 @@ from pydrake.systems.analysis import (
 )
 from pydrake.systems.framework import Context, System
 
-from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
+from drake_haptics.analysis.diagram_systems import Timing, calc_path
+from drake_haptics.common.subsystems import walk_leaves
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.common.value_checks import check_positive
 

@@ -15,13 +15,9 @@ from pydrake.systems.framework import (
     System,
 )
 
-from drake_haptics.analysis.diagram_systems import (
-    AutoDiffClone,
-    Timing,
-    calc_path,
-    walk_leaves,
-)
+from drake_haptics.analysis.diagram_systems import AutoDiffClone, Timing, calc_path
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.subsystems import walk_leaves
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,16 @@ import inspect
 import time
 import warnings
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import wraps
 from typing import Any
 
 import numpy as np
-from pydrake.systems.framework import Context, Diagram, LeafSystem, System
+from pydrake.systems.framework import Context, LeafSystem, System
 
 from drake_haptics.common.one_line import count
+from drake_haptics.common.subsystems import walk_leaves
 from drake_haptics.loop.builder import HapticDiagram
 
 # Methods by which a system passes its callbacks to Drake.
@@ -259,7 +260,7 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
         elif name in coupled:
             together, why = coupled, _COUPLED_WHY
         taken = [one for one in systems if one is system or one.get_name() in together]
-        leaves = [leaf for one in taken for leaf in _list_leaves(one)]
+        leaves = [leaf for one in taken for leaf in walk_leaves(one)]
         parts.append(
             make_part(name, kind, why, sum(own_s.get(leaf, 0.0) for leaf in leaves))
         )
@@ -288,12 +289,3 @@ def _list_systems(haptic: HapticDiagram) -> list[System]:
         is_device = system is haptic.loop.device
         systems += haptic.loop.device.GetSystems() if is_device else [system]
     return systems
-
-
-def _list_leaves(system: System) -> Iterator[System]:
-    """Yields the leaf systems in a system, or the system itself if it is one."""
-    if not isinstance(system, Diagram):
-        yield system
-        return
-    for part in system.GetSystems():
-        yield from _list_leaves(part)

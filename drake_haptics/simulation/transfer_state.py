@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from pydrake.math import RigidTransform
@@ -11,6 +11,7 @@ from pydrake.systems.framework import Context, Diagram, System
 
 from drake_haptics.bounds.held_handle import find_arm
 from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.common.subsystems import walk_systems
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.systems.arm.simulated_arm import (
@@ -86,9 +87,7 @@ def transfer_context(
 
 def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
     """Returns X_WH, the pose of the handle."""
-    device = haptic.loop.device
-    port = device.GetOutputPort("X_WH")
-    return vector_to_pose(port.Eval(device.GetMyContextFromRoot(root)))
+    return vector_to_pose(haptic.diagram.GetOutputPort("X_WH").Eval(root))
 
 
 def _has_same_device(old: HapticDiagram, new: HapticDiagram) -> bool:
@@ -193,14 +192,6 @@ def release_diagram(haptic: HapticDiagram) -> None:
     Args:
         haptic: Diagram that no simulator, port or viewer uses any longer.
     """
-    for system in list(_list_systems(haptic.diagram)):
+    for system in list(walk_systems(haptic.diagram)):
         # With other bindings a system may have no such attributes.
         getattr(system, "__dict__", {}).clear()
-
-
-def _list_systems(system: System) -> Iterator[System]:
-    """Yields a system and all systems in it."""
-    yield system
-    if isinstance(system, Diagram):
-        for part in system.GetSystems():
-            yield from _list_systems(part)
