@@ -6,7 +6,6 @@ import inspect
 import math
 import textwrap
 from time import monotonic
-from typing import Any
 
 from pydrake.systems.framework import Context
 
@@ -25,7 +24,6 @@ from drake_haptics.common.colors import make_legend
 from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.loop.device_placement import DevicePlacement
 from drake_haptics.simulation.device_monitor import SilenceMonitor
 from drake_haptics.simulation.live_values import LiveKey
 from drake_haptics.simulation.statistics import RunStatistics
@@ -42,69 +40,6 @@ _CLUSTERING_HELP = (
 # Shortest time between states sent to pages, since a dragged slider changes every
 # frame.
 _TELL_PERIOD_S = 0.1
-
-
-def make_setup_message(
-    changes: SceneChanges,
-    *,
-    name: str,
-    meshcat_url: str,
-    handles: dict[str, str],
-    site: DevicePlacement,
-    locked: str,
-) -> dict[str, Any]:
-    """Returns the message `hello`, ready for JSON."""
-    scene, file = changes.scene, changes.file
-    return {
-        "meshcat": meshcat_url,
-        "scene": name,
-        # A message longer than a datagram would never reach the page.
-        "description": textwrap.shorten(
-            scene.description, _LONGEST_DESCRIPTION, placeholder=" …"
-        ),
-        "period_s": 1.0 / scene.device.rate_hz,
-        "limits": {"force_N": site.max_force_N, "torque_Nm": site.max_torque_Nm},
-        "keys": [
-            {
-                "key": item.key,
-                "label": item.label,
-                "unit": item.unit,
-                "low": item.low,
-                "high": item.high,
-                "log": item.is_logarithmic,
-                "group": item.group,
-                "help": item.help,
-                "file": changes.read_file(item),
-            }
-            for item in changes.list_keys()
-        ],
-        "choices": [
-            {
-                "key": CLUSTERING,
-                "label": "Clustering",
-                "options": list(CLUSTERINGS),
-                "help": _CLUSTERING_HELP,
-                "file": file.contact.clustering,
-            }
-        ],
-        "effects": [
-            {
-                "name": effect,
-                "label": effect.capitalize(),
-                "help": (inspect.getdoc(schema) or "").partition("\n")[0],
-                "file": getattr(file.effects, effect) is not None,
-            }
-            for effect, schema in EFFECTS.items()
-        ],
-        "handles": [{"name": key, "label": label} for key, label in handles.items()],
-        "views": [
-            {"name": key, "label": label} for key, label in PICTURE_VIEWS.items()
-        ],
-        "cameras": list(CAMERAS),
-        "legend": make_legend(scene.effects.friction is not None),
-        "locked": locked,
-        "shed_stages": list(SHED_STAGES),
-    }
 
 
 class Cockpit:
@@ -218,14 +153,60 @@ class Cockpit:
 
     def _greet(self) -> None:
         """Sends the page what can be shown and changed."""
-        greeting = make_setup_message(
-            self._changes,
-            name=self._name,
-            meshcat_url=self._page.meshcat_url,
-            handles=self._holder.names,
-            site=self._holder.site,
-            locked=self._locked,
-        )
+        changes, holder = self._changes, self._holder
+        scene, site = changes.scene, holder.site
+        greeting = {
+            "meshcat": self._page.meshcat_url,
+            "scene": self._name,
+            # A message longer than a datagram would never reach the page.
+            "description": textwrap.shorten(
+                scene.description, _LONGEST_DESCRIPTION, placeholder=" …"
+            ),
+            "period_s": 1.0 / scene.device.rate_hz,
+            "limits": {"force_N": site.max_force_N, "torque_Nm": site.max_torque_Nm},
+            "keys": [
+                {
+                    "key": item.key,
+                    "label": item.label,
+                    "unit": item.unit,
+                    "low": item.low,
+                    "high": item.high,
+                    "log": item.is_logarithmic,
+                    "group": item.group,
+                    "help": item.help,
+                    "file": changes.read_file(item),
+                }
+                for item in changes.list_keys()
+            ],
+            "choices": [
+                {
+                    "key": CLUSTERING,
+                    "label": "Clustering",
+                    "options": list(CLUSTERINGS),
+                    "help": _CLUSTERING_HELP,
+                    "file": changes.file.contact.clustering,
+                }
+            ],
+            "effects": [
+                {
+                    "name": effect,
+                    "label": effect.capitalize(),
+                    "help": (inspect.getdoc(schema) or "").partition("\n")[0],
+                    "file": getattr(changes.file.effects, effect) is not None,
+                }
+                for effect, schema in EFFECTS.items()
+            ],
+            "handles": [
+                {"name": key, "label": label} for key, label in holder.names.items()
+            ],
+            "views": [
+                {"name": key, "label": label} for key, label in PICTURE_VIEWS.items()
+            ],
+            "cameras": list(CAMERAS),
+            "legend": make_legend(scene.effects.friction is not None),
+            "locked": self._locked,
+            "shed_stages": list(SHED_STAGES),
+        }
         self._page.tell("hello", greeting)
 
     def _look_out(self) -> Outlook:
@@ -233,8 +214,7 @@ class Cockpit:
         assert self._root is not None
         loop, backend = self._haptic.loop, self._holder.backend
         reading = None if backend is None else backend.read()
-        handle = loop.device.GetOutputPort("X_WH")
-        X_WH = handle.Eval(loop.device.GetMyContextFromRoot(self._root))
+        X_WH = self._haptic.diagram.GetOutputPort("X_WH").Eval(self._root)
         shed = 0
         if loop.load_shedding is not None:
             relief = loop.load_shedding.GetMyContextFromRoot(self._root)
