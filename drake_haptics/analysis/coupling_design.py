@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +49,7 @@ def plot_axis_design(
     design: AxisDesign,
     period_s: float,
     delay_s: float,
-    units: tuple[str, str],
+    units: Sequence[str],
 ) -> None:
     """Draws K over B: stability without a hand, passivity, and the chosen gains."""
     device = design.device
@@ -119,10 +121,8 @@ class CouplingDesign:
     def describe(self) -> str:
         """Returns lines of text with the gains and what limits them."""
         lines = [f"At {1.0 / self.period_s:g} Hz and {1e3 * self.delay_s:g} ms delay:"]
-        kinds = [("", self.translation, "N/m", "N·s/m")]
-        if self.rotation is not None:
-            kinds.append(("rotational ", self.rotation, "N·m/rad", "N·m·s/rad"))
-        for name, axis, stiffness_unit, damping_unit in kinds:
+        for kind, axis, stiffness_unit, damping_unit in self._list_kinds():
+            name = "rotational " if kind == "rotation" else ""
             passive = [m.grip for m in axis.margins if m.is_passive]
             weakest = min(axis.margins, key=lambda m: min(m.stiffness, m.gain))
             lines += [
@@ -147,28 +147,28 @@ class CouplingDesign:
         Returns:
             The axes of the translation.
         """
-        rotation = self.rotation
-        if axes is None:
+        kinds = self._list_kinds()
+        if axes is not None:
+            kinds, panels = kinds[:1], [axes]
+        else:
             from matplotlib import pyplot
 
-            figure = pyplot.figure(figsize=(10.0 if rotation else 5.5, 5.0))
-            axes = figure.add_subplot(1, 2 if rotation else 1, 1)
-            if rotation:
-                beside = figure.add_subplot(1, 2, 2)
-                plot_axis_design(
-                    beside,
-                    rotation,
-                    self.period_s,
-                    self.delay_s,
-                    ("N·m/rad", "N·m·s/rad"),
-                )
-                beside.set_title("rotation")
-            figure.set_layout_engine("tight")
-        plot_axis_design(
-            axes, self.translation, self.period_s, self.delay_s, ("N/m", "N·s/m")
-        )
-        axes.set_title("translation")
-        return axes
+            size_inch = (10.0 if len(kinds) > 1 else 5.5, 5.0)
+            _, row = pyplot.subplots(
+                1, len(kinds), figsize=size_inch, layout="tight", squeeze=False
+            )
+            panels = list(row[0])
+        for panel, (name, design, *units) in zip(panels, kinds, strict=True):
+            plot_axis_design(panel, design, self.period_s, self.delay_s, units)
+            panel.set_title(name)
+        return panels[0]
+
+    def _list_kinds(self) -> list[tuple[str, AxisDesign, str, str]]:
+        """Returns name, design, and units of stiffness and damping of each kind."""
+        kinds = [("translation", self.translation, "N/m", "N·s/m")]
+        if self.rotation is not None:
+            kinds.append(("rotation", self.rotation, "N·m/rad", "N·m·s/rad"))
+        return kinds
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields, ready for JSON."""
@@ -211,10 +211,18 @@ def suggest_coupling(
             margin is not above 1, or no stiffness has it.
         TypeError: The device is of another type.
     """
-    _check(rate_hz, delay_s, margin, hand)
+    check_positive(rate_hz=rate_hz)
+    check_at_least(0, delay_s=delay_s)
+    if not (margin > 1.0 and np.isfinite(margin)):
+        raise ValueError(f"margin must be above 1, is {margin}")
+    if hand is not None and hand not in HAND_GRIPS:
+        raise ValueError(f"hand: '{hand}' is not one of {', '.join(HAND_GRIPS)}")
     handle, preset = _read_device(device)
     period_s = 1.0 / rate_hz
-    translation = design_axis(
+    design = partial(
+        design_axis, period_s=period_s, delay_s=delay_s, margin=margin, passive_in=hand
+    )
+    translation = design(
         AxisDevice(
             handle.mass_kg,
             handle.damping_Ns_per_m,
@@ -222,14 +230,10 @@ def suggest_coupling(
             preset.max_damping_Ns_per_m if preset else None,
         ),
         {name: _translation_of(grip) for name, grip in HAND_GRIPS.items()},
-        period_s,
-        delay_s,
-        margin,
-        hand,
     )
     rotation = None
     if preset is None or preset.max_torque_Nm > 0.0:
-        rotation = design_axis(
+        rotation = design(
             AxisDevice(
                 handle.inertia_kgm2,
                 handle.rotational_damping_Nms_per_rad,
@@ -237,10 +241,6 @@ def suggest_coupling(
                 preset.max_rotational_damping_Nms_per_rad if preset else None,
             ),
             {name: _rotation_of(grip) for name, grip in HAND_GRIPS.items()},
-            period_s,
-            delay_s,
-            margin,
-            hand,
         )
     return CouplingDesign(
         coupling=CouplingParameters(
@@ -255,15 +255,6 @@ def suggest_coupling(
         translation=translation,
         rotation=rotation,
     )
-
-
-def _check(rate_hz: float, delay_s: float, margin: float, hand: str | None) -> None:
-    check_positive(rate_hz=rate_hz)
-    check_at_least(0, delay_s=delay_s)
-    if not (margin > 1.0 and np.isfinite(margin)):
-        raise ValueError(f"margin must be above 1, is {margin}")
-    if hand is not None and hand not in HAND_GRIPS:
-        raise ValueError(f"hand: '{hand}' is not one of {', '.join(HAND_GRIPS)}")
 
 
 def _translation_of(grip: HandGrip | None) -> AxisHand:
