@@ -205,16 +205,11 @@ class SceneChanges:
         changes: dict[str, Any] = {}
         for section in ("contact", "coupling"):
             file, now = getattr(self.file, section), getattr(self.scene, section)
-            differing = {
-                field.name: getattr(now, field.name)
-                for field in dataclasses.fields(now)
-                if getattr(now, field.name) != getattr(file, field.name)
-            }
-            if differing:
+            if differing := _list_differing(now, file):
                 changes[section] = differing
         if self.scene.effects != self.file.effects:
             changes["effects"] = {
-                name: _list_given(effect)
+                name: _list_differing(effect, type(effect)())
                 for name in EFFECTS
                 if (effect := getattr(self.scene.effects, name)) is not None
             }
@@ -237,13 +232,12 @@ def _make_material(file: Material, now: Material, effects: Effects) -> Material:
     )
 
 
-def _list_given(effect: Any) -> dict[str, Any]:
-    """Returns the values of an effect that are not its defaults."""
-    default = type(effect)()
+def _list_differing(now: Any, other: Any) -> dict[str, Any]:
+    """Returns the values of a dataclass that differ from those of another."""
     return {
-        field.name: getattr(effect, field.name)
-        for field in dataclasses.fields(effect)
-        if getattr(effect, field.name) != getattr(default, field.name)
+        field.name: getattr(now, field.name)
+        for field in dataclasses.fields(now)
+        if getattr(now, field.name) != getattr(other, field.name)
     }
 
 
