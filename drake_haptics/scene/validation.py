@@ -460,7 +460,7 @@ def calc_skin_speed(contact: ContactParameters, step_s: float) -> float:
         contact: Law, tolerance and query rate.
         step_s: Duration of a step of the tool, s; a slower query counts as the step.
     """
-    if contact.law == "constraint":
+    if is_constraint(contact):
         return math.inf
     return contact.tolerance_m * min(contact.query_rate_hz or math.inf, 1.0 / step_s)
 

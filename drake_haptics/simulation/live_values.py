@@ -256,15 +256,10 @@ def _list_springs(scene: Scene) -> tuple[float, ...]:
 
 def _without_live_values(scene: Scene) -> Scene:
     """Returns a scene with the default of each live value."""
+    names = [key.partition(".")[2] for key in _OF_LOOP if key.startswith("contact.")]
     default = ContactParameters()
-    contact = replace(
-        scene.contact,
-        tolerance_m=default.tolerance_m,
-        stiffness_N_per_m=default.stiffness_N_per_m,
-        damping_Ns_per_m=default.damping_Ns_per_m,
-        clustering=default.clustering,
-        cluster_size_m=default.cluster_size_m,
-    )
+    live = {name: getattr(default, name) for name in ("clustering", *names)}
+    contact = replace(scene.contact, **live)
     return replace(scene, coupling=CouplingParameters(), contact=contact)
 
 
