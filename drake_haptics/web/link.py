@@ -176,11 +176,3 @@ class PageLink:
             self._process.wait()
         self._let_go()
         self._listener.close()
-
-    def __enter__(self) -> PageLink:
-        """Returns the link."""
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Closes it."""
-        self.close()

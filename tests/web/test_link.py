@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import closing
 
 import pytest
 import websocket
@@ -27,6 +28,7 @@ HEAD = {
 # A loop that tells the number of its page's process, and goes on.
 LOOP = f"""
 import time
+from contextlib import closing
 from drake_haptics.web.link import PageLink
 link = PageLink({MESHCAT!r})
 print(link.url, link._process.pid, flush=True)
@@ -73,7 +75,7 @@ def read_until(page, name):
 
 @pytest.fixture
 def link():
-    with PageLink(MESHCAT) as link:
+    with closing(PageLink(MESHCAT)) as link:
         yield link
 
 
@@ -212,7 +214,7 @@ def test_a_process_that_ends_at_once_is_not_started_for_ever(link, caplog):
 
 def test_more_connections_than_there_can_be_are_borne_in_silence(capfd):
     most = 24
-    with PageLink(MESHCAT) as link:
+    with closing(PageLink(MESHCAT)) as link:
         link.tell({"hello": {"scene": "cup"}})
         page = connect(link.url)
         pid = link._process.pid
