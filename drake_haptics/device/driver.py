@@ -328,9 +328,9 @@ class DriverStatistics:
         if fault == self._fault:
             return
         fault = Fault(fault)
-        if self._fault != Fault.NONE and fault == Fault.NONE:
+        if fault == Fault.NONE:
             self._recoveries[self._fault.name] += 1
-        if fault != Fault.NONE:
+        else:
             self._faults[fault.name] += 1
             self._listed.append({"time_s": round(time_s, 4), "fault": fault.name})
         self._fault = fault
