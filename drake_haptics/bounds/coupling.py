@@ -88,14 +88,6 @@ _ROTATION = _Kind(
 )
 
 
-def check_coupling(
-    coupling: SpringAndDamper, handle: HeldHandle, period_s: float, delay_s: float = 0.0
-) -> list[str]:
-    """Returns the sentences of `find_broken_bounds`, with the same arguments."""
-    found = find_broken_bounds(coupling, handle, period_s, delay_s)
-    return [bound.sentence for bound in found]
-
-
 def find_broken_bounds(
     coupling: SpringAndDamper, handle: HeldHandle, period_s: float, delay_s: float = 0.0
 ) -> list[BrokenBound]:
@@ -118,11 +110,12 @@ def find_broken_bounds(
         (_ROTATION, handle.inertia_kgm2, handle.rotational_damping_Nms_per_rad),
     ]:
         K, B = getattr(coupling, kind.stiffness), getattr(coupling, kind.damping)
-        found += [
-            *_check_stiffness(kind, K, B, b, period_s, delay_s),
-            *_check_damping(kind, K, B, m, period_s),
-            *_check_passivity(kind, K, B, b, period_s, delay_s),
-        ]
+        checked = (
+            _check_stiffness(kind, K, B, b, period_s, delay_s),
+            _check_damping(kind, K, B, m, period_s),
+            _check_passivity(kind, K, B, b, period_s, delay_s),
+        )
+        found += [bound for bound in checked if bound is not None]
     return found
 
 
@@ -157,73 +150,65 @@ def find_exceeded_ratings(
 
 def _check_stiffness(
     kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
-) -> list[BrokenBound]:
+) -> BrokenBound | None:
     """Checks K against the law of Gil et al."""
     bound = calc_stable_stiffness(b, B, period_s, delay_s)
     if K <= bound:
-        return []
-    return [
-        BrokenBound(
-            kind.stiffness,
-            f"This will shake: device and hand bear {bound:.3g} {kind.stiffness_unit}"
-            " at this rate. Lower it, raise the damping, or hold more firmly.",
-            f"{kind.stiffness} is {K:g}, but stable only up to {bound:.5g}"
-            f" {kind.stiffness_unit}, (b + B) / (T/2 + t_d) (Gil et al.), with"
-            f" b = {b:.3g} {kind.damping_unit} of device and hand at"
-            f" {1.0 / period_s:g} Hz: lower it, raise {kind.damping} or the rate, or"
-            " hold the device more firmly",
-        )
-    ]
+        return None
+    return BrokenBound(
+        kind.stiffness,
+        f"This will shake: device and hand bear {bound:.3g} {kind.stiffness_unit}"
+        " at this rate. Lower it, raise the damping, or hold more firmly.",
+        f"{kind.stiffness} is {K:g}, but stable only up to {bound:.5g}"
+        f" {kind.stiffness_unit}, (b + B) / (T/2 + t_d) (Gil et al.), with"
+        f" b = {b:.3g} {kind.damping_unit} of device and hand at"
+        f" {1.0 / period_s:g} Hz: lower it, raise {kind.damping} or the rate, or"
+        " hold the device more firmly",
+    )
 
 
 def _check_damping(
     kind: _Kind, K: float, B: float, m: float, period_s: float
-) -> list[BrokenBound]:
+) -> BrokenBound | None:
     bound = calc_sampled_damping(m, K, period_s)
     if B <= bound:
-        return []
+        return None
     if bound == 0.0:
-        return [
-            BrokenBound(
-                kind.stiffness,
-                f"This will shake, whatever the damping: device and hand have {m:.2g}"
-                f" {kind.mass_unit}, too little at this rate. Lower it.",
-                f"{kind.stiffness} is {K:g}, too stiff for any damping (Jury's"
-                f" criterion) on {m:.3g} {kind.mass_unit} of device and hand at"
-                f" {1.0 / period_s:g} Hz: lower it or raise the rate",
-            )
-        ]
-    return [
-        BrokenBound(
-            kind.damping,
-            f"This will shake: device and hand bear {bound:.3g} {kind.damping_unit} at"
-            " this rate. Lower it.",
-            f"{kind.damping} is {B:g}, but stable only up to {bound:.5g}"
-            f" {kind.damping_unit}, below 2 m/T (Jury's criterion), on {m:.3g}"
-            f" {kind.mass_unit} of device and hand at {1.0 / period_s:g} Hz: lower it"
-            " or raise the rate",
+        return BrokenBound(
+            kind.stiffness,
+            f"This will shake, whatever the damping: device and hand have {m:.2g}"
+            f" {kind.mass_unit}, too little at this rate. Lower it.",
+            f"{kind.stiffness} is {K:g}, too stiff for any damping (Jury's"
+            f" criterion) on {m:.3g} {kind.mass_unit} of device and hand at"
+            f" {1.0 / period_s:g} Hz: lower it or raise the rate",
         )
-    ]
+    return BrokenBound(
+        kind.damping,
+        f"This will shake: device and hand bear {bound:.3g} {kind.damping_unit} at"
+        " this rate. Lower it.",
+        f"{kind.damping} is {B:g}, but stable only up to {bound:.5g}"
+        f" {kind.damping_unit}, below 2 m/T (Jury's criterion), on {m:.3g}"
+        f" {kind.mass_unit} of device and hand at {1.0 / period_s:g} Hz: lower it"
+        " or raise the rate",
+    )
 
 
 def _check_passivity(
     kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
-) -> list[BrokenBound]:
+) -> BrokenBound | None:
     """Checks K and B against the bound of Colgate and Schenkel."""
     bound = calc_passive_damping(K, B, period_s, delay_s)
     if b >= bound:
-        return []
+        return None
     name, value = (kind.damping, B) if 2.0 * B > K * period_s else (kind.stiffness, K)
-    return [
-        BrokenBound(
-            name,
-            f"A loose grip may vibrate: device and hand damp by {b:.3g}"
-            f" {kind.damping_unit}, stiffness and damping together ask for"
-            f" {bound:.3g}. Lower one of them, or hold more firmly.",
-            f"{name} is {value:g}: not passive, because device and hand damp"
-            f" by b = {b:.3g} {kind.damping_unit} and K (T/2 + t_d) + |B| is"
-            f" {bound:.5g} (Colgate and Schenkel), so that some grips may vibrate:"
-            f" lower {kind.damping} or {kind.stiffness}, raise the rate, or hold the"
-            " device more firmly",
-        )
-    ]
+    return BrokenBound(
+        name,
+        f"A loose grip may vibrate: device and hand damp by {b:.3g}"
+        f" {kind.damping_unit}, stiffness and damping together ask for"
+        f" {bound:.3g}. Lower one of them, or hold more firmly.",
+        f"{name} is {value:g}: not passive, because device and hand damp"
+        f" by b = {b:.3g} {kind.damping_unit} and K (T/2 + t_d) + |B| is"
+        f" {bound:.5g} (Colgate and Schenkel), so that some grips may vibrate:"
+        f" lower {kind.damping} or {kind.stiffness}, raise the rate, or hold the"
+        " device more firmly",
+    )

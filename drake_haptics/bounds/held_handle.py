@@ -13,7 +13,6 @@ from pydrake.systems.framework import Context
 from drake_haptics.bounds.coupling import (
     BrokenBound,
     HeldHandle,
-    check_coupling,
     find_broken_bounds,
     find_exceeded_ratings,
 )
@@ -29,11 +28,12 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
     """Checks a scene's coupling on its simulated device in its hand.
 
     Returns:
-        A sentence for each broken bound, as from `check_coupling`.
+        A sentence for each broken bound.
     """
     held = calc_scene_handle(scene, device)
     period_s = scene.device.wrench_period_s
-    return check_coupling(scene.coupling, held, period_s, calc_force_delay(scene))
+    found = find_broken_bounds(scene.coupling, held, period_s, calc_force_delay(scene))
+    return [bound.sentence for bound in found]
 
 
 def check_real_coupling(scene: Scene) -> list[str]:

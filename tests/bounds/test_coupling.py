@@ -5,13 +5,17 @@ from pathlib import Path
 import pytest
 
 from drake_haptics import _core
-from drake_haptics.bounds.coupling import HeldHandle, check_coupling
+from drake_haptics.bounds.coupling import HeldHandle, find_broken_bounds
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, NOMINAL_GRIP
 
 PERIOD = 1e-3
 SCENES = sorted((Path(__file__).parents[2] / "models" / "scenes").glob("*.yaml"))
+
+
+def check_coupling(*arguments):
+    return [bound.sentence for bound in find_broken_bounds(*arguments)]
 
 
 def held_by(grip):
