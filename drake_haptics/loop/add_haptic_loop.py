@@ -134,6 +134,11 @@ def AddHapticLoop(
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
+    if len(materials) != len(objects):
+        raise ValueError(
+            f"materials must have one entry for each of the {len(objects)} objects, has"
+            f" {len(materials)}"
+        )
     sheds_load = load_shedding is not None
     places = {f"materials[{i}]": item for i, item in enumerate(materials)}
     check_parameters(contact, places, effects, coupling, sheds_load=sheds_load)

@@ -100,15 +100,9 @@ def add_contact_systems(
         warns_deep: Whether the systems warn of a deep contact themselves.
 
     Raises:
-        ValueError: A gain or size is out of range, two objects share a name, there
-            is not a material for each object, or the rate of the query is not that
-            of the tick divided by a whole number.
+        ValueError: A gain or size is out of range, two objects share a name, or the
+            rate of the query is not that of the tick divided by a whole number.
     """
-    if len(materials) != len(objects):
-        raise ValueError(
-            f"materials must have one entry for each of the {len(objects)} objects, has"
-            f" {len(materials)}"
-        )
     gains = find_contact_gains(contact, materials)
     query = builder.AddNamedSystem(
         "contact_query",

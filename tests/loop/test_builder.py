@@ -200,10 +200,17 @@ def test_a_second_loop_in_one_builder_is_refused_before_drake_ends_the_process(
 
 def test_a_loop_that_is_refused_leaves_the_builder_as_it_was(tmp_path):
     builder = DiagramBuilder()
-    with pytest.raises(ValueError, match="one entry for each of the 1 objects"):
-        add_loop_around_a_cart(tmp_path, builder, materials=[])
+    slow = ContactParameters(query_rate_hz=300.0)
+    with pytest.raises(SceneError, match=r"1 / period_s \(1000\) divided by"):
+        add_loop_around_a_cart(tmp_path, builder, contact=slow)
     assert not builder.GetSystems()
     add_loop_around_a_cart(tmp_path, builder)
+
+
+@pytest.mark.parametrize("contact", [ContactParameters(), CONSTRAINT])
+def test_materials_that_are_not_one_for_each_object_are_refused(tmp_path, contact):
+    with pytest.raises(ValueError, match="materials must have one entry for each of"):
+        add_loop_around_a_cart(tmp_path, contact=contact, materials=[])
 
 
 def test_a_device_of_another_period_is_refused(tmp_path):

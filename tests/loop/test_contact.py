@@ -74,19 +74,6 @@ def test_a_query_of_several_ticks_is_not_asked_again_by_relief(core, query_rate_
     assert found.contact_clustering.HasInputPort("load_shedding")
 
 
-def test_there_is_a_material_for_each_object(core):
-    with pytest.raises(ValueError, match=r"materials must have one entry.* of the 2"):
-        add_contact_systems(
-            DiagramBuilder(),
-            core,
-            objects(core),
-            ContactParameters(),
-            Effects(),
-            [Material()],
-            1e-3,
-        )
-
-
 def test_inputs_are_connected_by_their_names_once(core):
     builder = DiagramBuilder()
     found = add_contact_systems(
