@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceCommand, DeviceReading, GateState
 from drake_haptics.device.rotation_vector import (
     calc_angular_velocity,
@@ -24,18 +23,15 @@ from drake_haptics.device.rotation_vector import (
     to_rotation_vector,
 )
 
-# Largest lag of rotation behind its goal, rad; a rotation vector is then nearly
-# proportional to the rotation.
-_LONGEST_LAG_RAD = 0.5
-# The runner turns at this share of the limit; a rotation vector's rate exceeds the
-# angular velocity by up to a hundredth, for a lag as long as that.
-_TURN_SHARE = 0.98
-# The handle lags 50 ms behind a steady motion: less is felt as steps of the input, more
-# as a rubber band.
+# λ. The handle lags 2/λ, 50 ms, behind a steady motion: less is felt as steps of the
+# input, more as a rubber band.
 _RATE_PER_S = 40.0
 # A fast hand, but not so fast that a tool would pass through an object.
 _MAX_SPEED_M_PER_S = 0.5
 _MAX_TURN_RAD_PER_S = 6.0
+# The runner turns at this share of the limit; a rotation vector's rate exceeds the
+# angular velocity by up to a hundredth, for a lag of 0.5 rad. It is 0.3 rad at most.
+_TURN_SHARE = 0.98
 
 
 @dataclass(frozen=True)
@@ -51,14 +47,12 @@ class Pursuit:
     from rest, and from any state after such a run, `|ẋ| ≤ |u|` at all times.
 
     Attributes:
-        rate_per_s: λ, 1/s.
         start: x at time 0.
         start_velocity: ẋ at time 0, 1/s.
         run_velocity: u, 1/s.
         run_s: T, s.
     """
 
-    rate_per_s: float
     start: Sequence[float]
     start_velocity: Sequence[float]
     run_velocity: Sequence[float]
@@ -66,7 +60,6 @@ class Pursuit:
 
     @staticmethod
     def to_goal(
-        rate_per_s: float,
         start: Sequence[float],
         start_velocity: Sequence[float],
         goal: Sequence[float],
@@ -75,13 +68,8 @@ class Pursuit:
         """Returns the run to a goal, straight and at a speed, 1/s."""
         distance = math.hypot(*goal)
         share = speed / distance if distance > 0.0 else 0.0
-        return Pursuit(
-            rate_per_s,
-            start,
-            start_velocity,
-            [share * x for x in goal],
-            distance / speed,
-        )
+        run_velocity = [share * x for x in goal]
+        return Pursuit(start, start_velocity, run_velocity, distance / speed)
 
     def calc_runner(self, time_s: float) -> list[float]:
         """Returns s at a time, s."""
@@ -102,7 +90,7 @@ class Pursuit:
 
     def _calc_running(self, time_s: float) -> tuple[list[float], list[float]]:
         """Returns x and ẋ while the runner runs; x settles 2u/λ behind it."""
-        lag_s = 2.0 / self.rate_per_s
+        lag_s = 2.0 / _RATE_PER_S
         run = self.run_velocity
         offset = [x + lag_s * u for x, u in zip(self.start, run, strict=True)]
         change = [v - u for v, u in zip(self.start_velocity, run, strict=True)]
@@ -117,7 +105,7 @@ class Pursuit:
         self, offset: Sequence[float], change: Sequence[float], time_s: float
     ) -> tuple[list[float], list[float]]:
         """Returns z and ż of z̈ + 2λż + λ²z = 0 after a time."""
-        rate = self.rate_per_s
+        rate = _RATE_PER_S
         decay = math.exp(-rate * time_s)
         slopes = [w + rate * z for z, w in zip(offset, change, strict=True)]
         return (
@@ -143,44 +131,16 @@ class PoseFilter:
     often it is evaluated.
     """
 
-    def __init__(
-        self,
-        X_BH: np.ndarray,
-        *,
-        rate_per_s: float,
-        max_speed_m_per_s: float,
-        max_turn_rad_per_s: float,
-    ):
-        """Starts at rest.
-
-        Args:
-            X_BH: (7,) pose [qw qx qy qz x y z], m.
-            rate_per_s: λ, 1/s; the handle is 2/λ behind a steady motion.
-            max_speed_m_per_s: Largest speed of Ho, m/s.
-            max_turn_rad_per_s: Largest rate of turning, rad/s.
+    def __init__(self, X_BH: np.ndarray):
+        """Starts at rest at a pose (7,) [qw qx qy qz x y z], m.
 
         Raises:
-            ValueError: The pose is not finite or has no quaternion, a number is not
-                positive, or the handle could lag behind by more than 0.5 rad.
+            ValueError: The pose is not finite or has no quaternion.
         """
-        check_positive(
-            rate_per_s=rate_per_s,
-            max_speed_m_per_s=max_speed_m_per_s,
-            max_turn_rad_per_s=max_turn_rad_per_s,
-        )
-        most = _LONGEST_LAG_RAD * rate_per_s / 2.0
-        if max_turn_rad_per_s > most:
-            raise ValueError(
-                f"max_turn_rad_per_s must be at most rate_per_s / 4 = {most:g},"
-                f" is {max_turn_rad_per_s}"
-            )
-        self._rate_per_s = rate_per_s
-        self._max_speed_m_per_s = max_speed_m_per_s
-        self._max_turn_rad_per_s = _TURN_SHARE * max_turn_rad_per_s
         # Origins of the two pursuits' coordinates.
         self._q_B, self._p_B = _split(X_BH)
         self._time_s = -math.inf
-        rest = Pursuit(rate_per_s, [0.0] * 3, [0.0] * 3, [0.0] * 3, 0.0)
+        rest = Pursuit([0.0] * 3, [0.0] * 3, [0.0] * 3, 0.0)
         self._turn = self._move = rest
 
     def set_goal(self, X_BG: np.ndarray, time_s: float) -> None:
@@ -196,17 +156,15 @@ class PoseFilter:
         q_BG, p_BG = _split(X_BG)
         time_s = max(time_s, self._time_s)
         since_s = self._since(time_s)
-        rate = self._rate_per_s
 
         p, v = self._move.calc(since_s)
         run = self._move.calc_runner(since_s)
         origin = [o + s for o, s in zip(self._p_B, run, strict=True)]
         self._move = Pursuit.to_goal(
-            rate,
             [x - s for x, s in zip(p, run, strict=True)],
             v,
             [g - o for g, o in zip(p_BG, origin, strict=True)],
-            self._max_speed_m_per_s,
+            _MAX_SPEED_M_PER_S,
         )
         self._p_B = origin
 
@@ -217,11 +175,10 @@ class PoseFilter:
         q_B = normalize(multiply(to_quaternion(run), self._q_B))
         r = to_rotation_vector(multiply(q_BH, invert(q_B)))
         self._turn = Pursuit.to_goal(
-            rate,
             r,
             calc_rate(r, w),
             to_rotation_vector(multiply(q_BG, invert(q_B))),
-            self._max_turn_rad_per_s,
+            _TURN_SHARE * _MAX_TURN_RAD_PER_S,
         )
         self._q_B = q_B
         self._time_s = time_s
@@ -275,12 +232,7 @@ class FollowedHandle:
         Raises:
             ValueError: The pose is not finite or has no quaternion.
         """
-        self._filter = PoseFilter(
-            X_BH,
-            rate_per_s=_RATE_PER_S,
-            max_speed_m_per_s=_MAX_SPEED_M_PER_S,
-            max_turn_rad_per_s=_MAX_TURN_RAD_PER_S,
-        )
+        self._filter = PoseFilter(X_BH)
         self._sequence = 0
         self._gate = GateState.IDLE
         self._F_Ho_B = np.zeros(6)

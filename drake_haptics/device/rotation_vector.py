@@ -11,10 +11,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from drake_haptics.common.value_checks import check_positive
-
 # Below this angle, rad, series are exact to round-off.
 _SMALL_RAD = 1e-4
+_TIME_CONSTANT_S = 0.01
 # A handle whose orientation stays the same for this long is at rest.
 _REST_S = 0.05
 
@@ -109,18 +108,11 @@ class TurnRate:
     loop repeats values, so only a new orientation gives a difference, over the time
     since the last new one. In between the rate is held, and after 0.05 s it is zero.
 
-    The rate lags behind by the filter's time constant and half a sensor's period.
-
-    Args:
-        time_constant_s: Time constant of the low-pass, s.
-
-    Raises:
-        ValueError: The time constant is not positive.
+    The rate lags behind by the filter's time constant, 10 ms, and half a sensor's
+    period.
     """
 
-    def __init__(self, time_constant_s: float):
-        check_positive(time_constant_s=time_constant_s)
-        self._time_constant_s = time_constant_s
+    def __init__(self) -> None:
         self._time_s = -math.inf
         self._orientation: tuple[float, ...] | None = None
         self._rate = [0.0, 0.0, 0.0]
@@ -144,7 +136,7 @@ class TurnRate:
                 self._orientation, self._time_s = q, time_s
         elif q != self._orientation and elapsed_s > 0.0:
             turn = to_rotation_vector(multiply(q, invert(self._orientation)))
-            share = -math.expm1(-elapsed_s / self._time_constant_s)
+            share = -math.expm1(-elapsed_s / _TIME_CONSTANT_S)
             self._rate = [
                 rate + share * (angle / elapsed_s - rate)
                 for rate, angle in zip(self._rate, turn, strict=True)

@@ -30,7 +30,7 @@ def integrate(pursuit, goal, speed, time_s):
 @pytest.mark.parametrize("time_s", [0.0, 0.003, 0.1, 0.5, 0.55, 0.9])
 def test_it_solves_its_equation(time_s):
     goal, speed = [0.2, -0.1, 0.1], 0.5
-    pursuit = Pursuit.to_goal(RATE, [0.01, 0.0, -0.02], [0.3, 0.1, 0.0], goal, speed)
+    pursuit = Pursuit.to_goal([0.01, 0.0, -0.02], [0.3, 0.1, 0.0], goal, speed)
     x, v = pursuit.calc(time_s)
     x_true, v_true = integrate(pursuit, goal, speed, time_s)
     np.testing.assert_allclose(x, x_true, atol=1e-10)
@@ -38,7 +38,7 @@ def test_it_solves_its_equation(time_s):
 
 
 def test_a_goal_reached_at_once_gives_the_textbook_step():
-    pursuit = Pursuit.to_goal(RATE, [0.0], [0.0], [1.0], speed=1e6)
+    pursuit = Pursuit.to_goal([0.0], [0.0], [1.0], speed=1e6)
     for t in (0.01, 0.05, 0.2):
         x, v = pursuit.calc(t)
         assert x[0] == pytest.approx(1 - (1 + RATE * t) * np.exp(-RATE * t), abs=1e-5)
@@ -46,17 +46,17 @@ def test_a_goal_reached_at_once_gives_the_textbook_step():
 
 
 def test_it_runs_two_time_constants_behind():
-    pursuit = Pursuit.to_goal(RATE, [0.0, 0.0], [0.0, 0.0], [30.0, 40.0], speed=5.0)
+    pursuit = Pursuit.to_goal([0.0, 0.0], [0.0, 0.0], [30.0, 40.0], speed=5.0)
     x, v = pursuit.calc(5.0)
     np.testing.assert_allclose(v, [3.0, 4.0], rtol=1e-12)
     np.testing.assert_allclose(x, np.array([3.0, 4.0]) * (5.0 - 2 / RATE), rtol=1e-12)
 
 
 def test_a_goal_where_it_is_leaves_it_there():
-    pursuit = Pursuit.to_goal(RATE, [0.0] * 3, [0.0] * 3, [0.0] * 3, speed=1.0)
+    pursuit = Pursuit.to_goal([0.0] * 3, [0.0] * 3, [0.0] * 3, speed=1.0)
     assert pursuit.calc(3.0) == ([0.0] * 3, [0.0] * 3)
 
 
 def test_no_time_is_too_long():
-    pursuit = Pursuit.to_goal(RATE, [9.0], [-9.0], [1.0], speed=0.5)
+    pursuit = Pursuit.to_goal([9.0], [-9.0], [1.0], speed=0.5)
     assert pursuit.calc(1e9) == ([1.0], [0.0])

@@ -36,7 +36,6 @@ _BUTTONS = ("a", "b", "c")
 _QUATERNION_SLACK = 0.01
 # A service that sends nothing usable for this long is at fault.
 SILENT_NS = 100_000_000
-_TURN_RATE_TIME_CONSTANT_S = 0.01
 
 
 class HaplyMessageError(ValueError):
@@ -208,7 +207,7 @@ class HaplyExchange:
         self._device_id = device_id
         self._grip_id = grip_id
         self._force_field = force_field
-        self._turn_rate = TurnRate(_TURN_RATE_TIME_CONSTANT_S)
+        self._turn_rate = TurnRate()
         self._orientation: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
         self._named = ""
         self._heard_ns = 0
