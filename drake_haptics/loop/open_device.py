@@ -74,8 +74,6 @@ def _open_udp(
     from drake_haptics.device.udp_device import UdpDevice
 
     host, port = _split_host(parts, None)
-    if parts.path or parts.query or parts.fragment:
-        raise DeviceError(f"device {parts.geturl()!r}: nothing may follow the port")
     return UdpDevice(
         host, port, max_force_N=site.max_force_N, max_torque_Nm=site.max_torque_Nm
     )
@@ -86,7 +84,7 @@ def _open_haply(
 ) -> DeviceBackend:
     from drake_haptics.device.haply.haply_device import HaplyDevice
 
-    host, port = _split_host(parts, _HAPLY_PORT)
+    host, port = _split_host(parts._replace(query=""), _HAPLY_PORT)
     # The number of an IPv6 host has colons, which brackets keep from the port's.
     host = f"[{host}]" if ":" in host else host
     return HaplyDevice.open(f"ws://{host}:{port}", parts.query)
@@ -112,6 +110,8 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
             f" {'host and port' if default_port is None else 'the host'}, like"
             f" {parts.scheme}://127.0.0.1{':7400' if default_port is None else ''}"
         )
+    if parts.path or parts.query or parts.fragment:
+        raise DeviceError(f"device {parts.geturl()!r}: nothing may follow the port")
     return parts.hostname, port
 
 

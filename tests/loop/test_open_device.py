@@ -52,6 +52,11 @@ def test_nothing_follows_a_drivers_port(scene, end):
         open_device(f"udp://127.0.0.1:7400{end}", scene)
 
 
+def test_nothing_but_options_follows_the_port_of_a_service(scene):
+    with pytest.raises(DeviceError, match=r"haply://.*1/x': nothing may follow the"):
+        open_device("haply://127.0.0.1:1/x?max_force_N=1", scene)
+
+
 def test_a_replay_needs_a_file(scene):
     with pytest.raises(DeviceError, match=r"like replay:run\.tick"):
         open_device("replay:", scene)
