@@ -102,11 +102,6 @@ class RenderingWiring:
         # Wrenches (6) on the tool, and (6 each) on the objects that move.
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
-        self._asked: OutputPort | None = None
-        # Motions of the coupling, if its wrench goes to the device as it is.
-        self._coupled: OutputPort | None = None
-        # Inputs of `AppliedWrenches` from which it computes contact and coupling.
-        self._chain: dict[str, OutputPort] = {}
         self._warn_of_depth: Callable[[Context, float, float], None] | None = None
         self.proxy_gains: _core.CouplingGains | None = None
         self._contact_stiffness: Sequence[float] = []
@@ -118,19 +113,15 @@ class RenderingWiring:
             self.builder.ExportInput(port, port.get_name())
         self.outputs = _name_outputs(motions)
         moving = {f"O_{item.name}": item for item in objects if item.X_WB is None}
-        self._free = self._split_state({"T": tool, **moving})
+        # Sources that are not exported, or are faster than those that are.
+        self._inner = self._split_state({"T": tool, **moving})
 
     @property
     def sources(self) -> dict[str, OutputPort]:
         """Output ports, by the names of the inputs that need them."""
-        asked = {} if self._asked is None else {"F_Ho_W_desired": self._asked}
-        if self._coupled is not None:
-            asked["coupled_motions"] = self._coupled
         return {
             **self.outputs,
-            **self._free,
-            **self._chain,
-            **asked,
+            **self._inner,
             **{f"F_To_W_{name}": port for name, port in self._on_tool.items()},
             **{f"F_O_W_{name}": port for name, port in self._on_objects.items()},
         }
@@ -193,7 +184,7 @@ class RenderingWiring:
         )
         force, query = found.penalty_force, found.contact_query
         if query.HasOutputPort("contact_chain"):
-            self._chain["contact_chain"] = query.GetOutputPort("contact_chain")
+            self._inner["contact_chain"] = query.GetOutputPort("contact_chain")
             self._warn_of_depth = found.contact_clustering.warn_of_depth
         gains = find_contact_gains(contact, materials)
         self._contact_stiffness = gains.stiffness_N_per_m.tolist()
@@ -270,9 +261,10 @@ class RenderingWiring:
         )
         if self._proxy is None:
             self._push_tool("coupling", coupling.GetOutputPort("wrench_model"))
-            self._coupled = coupling.GetOutputPort("motions_and_gains")
-            if self._chain:
-                self._chain["motions_and_gains"] = self._coupled
+            joined = coupling.GetOutputPort("motions_and_gains")
+            self._inner["coupled_motions"] = joined
+            if "contact_chain" in self._inner:
+                self._inner["motions_and_gains"] = joined
         else:
             pull, proxy = coupling.GetOutputPort("wrench_model"), self._proxy
             body = self.builder.GetSubsystemByName("body_of_proxy")
@@ -282,8 +274,8 @@ class RenderingWiring:
                 (proxy.GetOutputPort("X_WT"), coupling.GetInputPort("X_WT")),
             ]:
                 self.builder.Connect(source, port)
-        self._asked = coupling.GetOutputPort("F_Ho_W_commanded")
-        self.outputs["F_Ho_W_commanded"] = self._asked
+        wrench = coupling.GetOutputPort("F_Ho_W_commanded")
+        self._inner["F_Ho_W_desired"] = self.outputs["F_Ho_W_commanded"] = wrench
         if device is None:
             for port in (coupling.GetInputPort("X_WH"), coupling.GetInputPort("V_WH")):
                 # Errors name this system.
@@ -333,7 +325,8 @@ class RenderingWiring:
                 wrenches = reaction.GetOutputPort("F_O_W")
                 self._on_objects["friction"] = wrenches
         if added.passivity is not None:
-            self._coupled = None
+            # The wrench of the coupling no longer goes to the device as it is.
+            self._inner.pop("coupled_motions", None)
             self.outputs |= _name_outputs(added.passivity)
 
     def add_applied_wrenches(self) -> None:
@@ -345,7 +338,7 @@ class RenderingWiring:
                 list(self._on_tool),
                 list(self._moving.values()),
                 list(self._on_objects),
-                "motions_and_gains" in self._chain,
+                "motions_and_gains" in self._inner,
                 self._warn_of_depth,
             ),
         )
