@@ -220,7 +220,7 @@ def _split(X: np.ndarray) -> tuple[list[float], list[float]]:
     return normalize(numbers[:4]), numbers[4:]
 
 
-class FollowedHandle:
+class FollowedHandle(PoseFilter):
     """The handle of a backend whose input device has no handle.
 
     Force does not move such a handle; it is only displayed.
@@ -232,7 +232,7 @@ class FollowedHandle:
         Raises:
             ValueError: The pose is not finite or has no quaternion.
         """
-        self._filter = PoseFilter(X_BH)
+        super().__init__(X_BH)
         self._sequence = 0
         self._gate = GateState.IDLE
         self._F_Ho_B = np.zeros(6)
@@ -247,14 +247,6 @@ class FollowedHandle:
     def F_Ho_B(self) -> np.ndarray:
         """(6,) wrench [τ; f] that is shown now, N·m and N."""
         return self._F_Ho_B
-
-    def set_goal(self, X_BG: np.ndarray, time_s: float) -> None:
-        """Moves the handle to a pose (7,) from now on.
-
-        Raises:
-            ValueError: The pose is not finite or has no quaternion.
-        """
-        self._filter.set_goal(X_BG, time_s)
 
     def show(self, command: DeviceCommand) -> None:
         """Shows a wrench from now on; shows zero if it is not finite.
@@ -276,7 +268,7 @@ class FollowedHandle:
     def read(self, time_s: float, buttons: int = 0) -> DeviceReading:
         """Returns the present reading."""
         self._sequence += 1
-        X_BH, V_BH = self._filter.calc(time_s)
+        X_BH, V_BH = self.calc(time_s)
         return DeviceReading(
             sequence=self._sequence,
             time_s=time_s,
