@@ -86,50 +86,48 @@ def add_effects(site: EffectSite) -> EffectSystems:
 
     The caller connects their outputs.
     """
-    add: dict[str, Callable[[Any, EffectSite], System]] = {
-        "shading": _add_shading,
-        "friction": _add_friction,
-        "braking": _add_braking,
-        "gravity": _add_gravity,
-        "passivity": _add_passivity,
+    make: dict[str, tuple[str, Callable[[Any, EffectSite], System]]] = {
+        "shading": ("force_shading", _make_shading),
+        "friction": ("stick_slip_friction", _make_friction),
+        "braking": ("pre_contact_braking", _make_braking),
+        "gravity": ("tool_gravity", _make_gravity),
+        "passivity": ("passivity_control", _make_passivity),
     }
-    systems: dict[str, Any] = {
-        name: add_one(getattr(site.effects, name), site)
-        for name, add_one in add.items()
-        if getattr(site.effects, name) is not None
-    }
+    systems: dict[str, Any] = {}
+    for effect, (name, make_one) in make.items():
+        values = getattr(site.effects, effect)
+        if values is not None:
+            system = site.builder.AddNamedSystem(name, make_one(values, site))
+            connect_by_name(site.builder, system, site.sources)
+            systems[effect] = system
+    chain = site.sources.get("contact_chain")
+    if chain is not None and "shading" in systems:
+        shading = {"shading": systems["shading"].GetOutputPort("shading")}
+        connect_by_name(site.builder, chain.get_system(), shading)
     return EffectSystems(**systems)
 
 
-def _add_shading(effect: ShadingParameters, site: EffectSite) -> System:
+def _make_shading(effect: ShadingParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.force_shading import ForceShading
 
-    system = ForceShading(
+    return ForceShading(
         site.tool,
         site.objects,
         crease_angle_deg=effect.crease_angle_deg,
         shaded=[material.shading is not False for material in site.materials],
     )
-    _add(site, "force_shading", system)
-    if (chain := site.sources.get("contact_chain")) is not None:
-        query = chain.get_system()
-        site.builder.Connect(
-            system.GetOutputPort("shading"), query.GetInputPort("shading")
-        )
-    return system
 
 
-def _add_friction(effect: FrictionParameters, site: EffectSite) -> System:
+def _make_friction(effect: FrictionParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
 
-    system = StickSlipFriction(
+    return StickSlipFriction(
         site.objects,
         period_s=site.period_s,
         coefficient=find_coefficients(effect, site.materials),
         break_away_m=effect.break_away_m,
         enable_chain="contact_chain" in site.sources,
     )
-    return _add(site, "stick_slip_friction", system)
 
 
 def find_coefficients(
@@ -140,41 +138,38 @@ def find_coefficients(
     return [effect.coefficient if mu is None else mu for mu in own]
 
 
-def _add_braking(effect: BrakingParameters, site: EffectSite) -> System:
+def _make_braking(effect: BrakingParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
 
-    system = PreContactBraking(
+    return PreContactBraking(
         site.objects,
         damping_Ns_per_m=effect.damping_Ns_per_m,
         distance_m=effect.distance_m,
         enable_load_shedding="load_shedding" in site.sources,
         enable_chain="contact_chain" in site.sources,
     )
-    return _add(site, "pre_contact_braking", system)
 
 
-def _add_gravity(effect: GravityParameters, site: EffectSite) -> System:
+def _make_gravity(effect: GravityParameters, site: EffectSite) -> System:
     from drake_haptics.systems.tool.tool_gravity import ToolGravity
 
-    system = ToolGravity(
+    return ToolGravity(
         mass_kg=site.tool_mass_kg,
         p_TTcm=list(site.p_TTcm),
         gravity_m_per_s2=effect.acceleration_m_per_s2,
     )
-    return _add(site, "tool_gravity", system)
 
 
-def _add_passivity(effect: PassivityParameters, site: EffectSite) -> System:
+def _make_passivity(effect: PassivityParameters, site: EffectSite) -> System:
     from drake_haptics.systems.tool.passivity_control import PassivityControl
 
     reserve_J = effect.reserve_J
-    system = PassivityControl(
+    return PassivityControl(
         period_s=site.period_s,
         max_damping_Ns_per_m=effect.max_damping_Ns_per_m,
         max_rotational_damping_Nms_per_rad=effect.max_rotational_damping_Nms_per_rad,
         reserve_J=_calc_reserve(site) if reserve_J is None else reserve_J,
     )
-    return _add(site, "passivity_control", system)
 
 
 def _calc_reserve(site: EffectSite) -> float:
@@ -186,10 +181,3 @@ def _calc_reserve(site: EffectSite) -> float:
     return calc_returnable_energy(
         site.springs, site.tool_mass_kg, _HIGHEST_LIFT_M * weight_N
     )
-
-
-def _add(site: EffectSite, name: str, system: System) -> System:
-    """Adds a system and connects its inputs to the sources with their names."""
-    site.builder.AddNamedSystem(name, system)
-    connect_by_name(site.builder, system, site.sources)
-    return system
