@@ -21,7 +21,8 @@ from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.clearance import fit_skin
 from drake_haptics.loop.device_placement import (
-    make_haptic_device,
+    find_device_site,
+    make_device_port,
     place_device,
     wait_for_reading,
 )
@@ -170,7 +171,14 @@ def BuildHapticDiagram(
         if reuse is not None and reuse.backend is device:
             X_WB = reuse.X_WB
         X_WB = X_WB or place_device(scene, device, X_WH)
-        port, X_WH = make_haptic_device(scene, device, X_WB)
+        site = find_device_site(scene)
+        port, X_WH = make_device_port(
+            device,
+            X_WB,
+            period_s=period_s,
+            max_force_N=site.max_force_N,
+            max_torque_Nm=site.max_torque_Nm,
+        )
         X_WT = X_WH @ X_HT
     assert port is not None
     meter = None if scene.device.tick_budget_us is None else TickMeter()

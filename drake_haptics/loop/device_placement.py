@@ -124,30 +124,6 @@ def place_device(
     return RigidTransform(R_WB, X_WH.translation() - R_WB @ p_BH)
 
 
-def make_haptic_device(
-    scene: Scene, backend: DeviceBackend, X_WB: RigidTransform
-) -> tuple[HapticDevice, RigidTransform]:
-    """Returns a scene's device port for a backend, and the pose X_WH of its handle.
-
-    Args:
-        scene: Scene that gives the rate and the limits.
-        backend: Open device.
-        X_WB: Pose of its base in the world.
-
-    Raises:
-        SceneError: There is no such preset, or the hand's path is not valid.
-        DeviceError: The backend gives no usable reading.
-    """
-    site = find_device_site(scene)
-    return make_device_port(
-        backend,
-        X_WB,
-        period_s=1.0 / scene.device.rate_hz,
-        max_force_N=site.max_force_N,
-        max_torque_Nm=site.max_torque_Nm,
-    )
-
-
 def make_device_port(
     backend: DeviceBackend,
     X_WB: RigidTransform | None = None,
