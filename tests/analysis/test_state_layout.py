@@ -11,12 +11,9 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LinearSystem
 from wall_loop import make_mass, make_wall
 
-from drake_haptics.analysis.diagram_systems import (
-    calc_path,
-    find_state_layout,
-    walk_leaves,
-)
+from drake_haptics.analysis.diagram_systems import calc_path, find_state_layout
 from drake_haptics.analysis.sampled_map import get_state, set_state
+from drake_haptics.common.subsystems import walk_leaves
 
 
 def make_plant(time_step, *names):

@@ -10,12 +10,9 @@ from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator, Simula
 from twin_check import differentiate
 
 from drake_haptics._core import AutoDiffVector
-from drake_haptics.analysis.diagram_systems import (
-    AutoDiffClone,
-    find_state_layout,
-    walk_leaves,
-)
+from drake_haptics.analysis.diagram_systems import AutoDiffClone, find_state_layout
 from drake_haptics.analysis.sampled_map import get_state, set_state
+from drake_haptics.common.subsystems import walk_leaves
 from drake_haptics.systems.contact.penalty_force import PenaltyForce
 
 # Each with the time up to which it is simulated for states in contact, s. The rubbed
