@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import expm
 
 from drake_haptics.analysis.coupling_design import suggest_coupling
-from drake_haptics.bounds.coupling import HeldHandle, check_coupling
+from drake_haptics.bounds.coupling import HeldHandle, find_broken_bounds
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.validation import SceneError
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
@@ -184,7 +184,7 @@ def test_passivity_in_a_hand_is_kept_where_it_is_asked_for(device, grip):
         design.rotation.device.mass + hand.inertia_kgm2,
         design.rotation.device.damping + hand.rotational_damping_Nms_per_rad + 1e-9,
     )
-    assert check_coupling(design.coupling, held, 1e-3) == []
+    assert find_broken_bounds(design.coupling, held, 1e-3) == []
 
 
 def test_a_device_that_shows_no_torque_gets_none():
