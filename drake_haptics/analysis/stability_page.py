@@ -9,6 +9,7 @@ from drake_haptics.analysis.delay_margin import LONGEST_DELAY
 from drake_haptics.analysis.modes import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import format_limit
+from drake_haptics.bounds.coupling import ROTATION, TRANSLATION
 from drake_haptics.bounds.held_handle import calc_force_delay
 from drake_haptics.report.page import write_page, write_picture
 from drake_haptics.scene.schema import Scene
@@ -178,34 +179,20 @@ def _make_margins(stability: SceneStability) -> _Table:
 
 def _make_gains(stability: SceneStability) -> _Table:
     coupling, handle = stability.scene.coupling, stability.handle
+    stiffness = TRANSLATION.stiffness, ROTATION.stiffness
+    damping = TRANSLATION.damping, ROTATION.damping
+    mass = TRANSLATION.mass, ROTATION.mass
     rows = [
-        (
-            "coupling: stiffness, N/m and N·m/rad",
-            coupling.stiffness_N_per_m,
-            coupling.rotational_stiffness_Nm_per_rad,
-        ),
-        (
-            "coupling: damping, N·s/m and N·m·s/rad",
-            coupling.damping_Ns_per_m,
-            coupling.rotational_damping_Nms_per_rad,
-        ),
-        (
-            "device and hand: least mass, kg and kg·m²",
-            handle.mass_kg,
-            handle.inertia_kgm2,
-        ),
-        (
-            "device and hand: least damping, N·s/m and N·m·s/rad",
-            handle.damping_Ns_per_m,
-            handle.rotational_damping_Nms_per_rad,
-        ),
-        (
-            "hand: least stiffness, N/m and N·m/rad",
-            handle.stiffness_N_per_m,
-            handle.rotational_stiffness_Nm_per_rad,
-        ),
+        ("coupling: stiffness, N/m and N·m/rad", coupling, stiffness),
+        ("coupling: damping, N·s/m and N·m·s/rad", coupling, damping),
+        ("device and hand: least mass, kg and kg·m²", handle, mass),
+        ("device and hand: least damping, N·s/m and N·m·s/rad", handle, damping),
+        ("hand: least stiffness, N/m and N·m/rad", handle, stiffness),
     ]
-    cells = [[what, f"{one:.5g}", f"{other:.5g}"] for what, one, other in rows]
+    cells = [
+        [what, *(f"{getattr(part, name):.5g}" for name in names)]
+        for what, part, names in rows
+    ]
     return ["", "translation", "rotation"], cells
 
 

@@ -19,7 +19,7 @@ from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.modes import describe_motion, find_modes
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.analysis.stability_limit import find_stability_limit
-from drake_haptics.bounds.coupling import HeldHandle
+from drake_haptics.bounds.coupling import ROTATION, TRANSLATION
 from drake_haptics.bounds.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 from drake_haptics.report.plain_data import to_plain_data
@@ -27,11 +27,7 @@ from drake_haptics.report.plain_data import to_plain_data
 Kind = Literal["translation", "rotation"]
 Against = Literal["this contact", "a rigid wall"]
 
-# Names of a coupling's stiffness and damping, by kind.
-_GAINS = {
-    "translation": ("stiffness_N_per_m", "damping_Ns_per_m"),
-    "rotation": ("rotational_stiffness_Nm_per_rad", "rotational_damping_Nms_per_rad"),
-}
+_KINDS = {"translation": TRANSLATION, "rotation": ROTATION}
 # Stiffnesses are tried within this factor of the scene's.
 _RANGE = 1e4
 # Simulations are compared with eigenvalues within this share of the limit.
@@ -76,7 +72,7 @@ class StiffnessLimits:
     @property
     def unit(self) -> str:
         """Unit of all stiffnesses."""
-        return "N/m" if self.kind == "translation" else "N·m/rad"
+        return _KINDS[self.kind].stiffness_unit
 
     @property
     def gain_margin(self) -> float:
@@ -128,11 +124,11 @@ def find_stiffness_limits(
                 f"{name} must be {' or '.join(map(repr, known))}, is {word!r}"
             )
     report = progress or (lambda share: None)
-    stiffness_name, damping_name = _GAINS[kind]
-    stiffness = getattr(held.scene.coupling, stiffness_name)
-    damping = getattr(held.scene.coupling, damping_name)
+    names = _KINDS[kind]
+    stiffness = getattr(held.scene.coupling, names.stiffness)
+    damping = getattr(held.scene.coupling, names.damping)
     if not stiffness > 0.0:
-        raise ValueError(f"coupling.{stiffness_name} must be above 0, is {stiffness}")
+        raise ValueError(f"coupling.{names.stiffness} must be above 0, is {stiffness}")
     if against == "a rigid wall":
         held = held.against_rigid_wall()
     done = 0
@@ -141,7 +137,7 @@ def find_stiffness_limits(
         nonlocal done
         done += 1
         report(1.0 - 0.9**done)
-        coupling = replace(held.scene.coupling, **{stiffness_name: value})
+        coupling = replace(held.scene.coupling, **{names.stiffness: value})
         return analyze_held_scene(held, coupling)
 
     reasons: dict[float, str] = {}
@@ -169,7 +165,15 @@ def find_stiffness_limits(
         words = f"beyond it nothing can be told: {reasons[min(reasons)]}"
     haptic, context = build_with_same_load(held)
     handle = calc_scene_handle(held.scene, haptic.loop.device, context)
-    wall = _make_wall(held, kind, handle, damping)
+    wall = SampledWall(
+        mass=getattr(handle, names.mass),
+        damping=getattr(handle, names.damping),
+        period_s=1.0 / held.scene.device.rate_hz,
+        wall_damping=damping,
+        delay_s=calc_force_delay(held.scene),
+        hand_stiffness=getattr(handle, names.stiffness),
+        true_velocity=True,
+    )
     report(1.0)
     return StiffnessLimits(
         kind=kind,
@@ -197,30 +201,6 @@ def _find_simulated(growth: Callable[[float], float], near: float) -> float:
         return math.exp(brentq(excess, low, high, xtol=1e-4))
     except ValueError:  # No change of sign, or nothing to measure.
         return math.nan
-
-
-def _make_wall(
-    held: HeldScene, kind: Kind, handle: HeldHandle, damping: float
-) -> SampledWall:
-    """Returns the coupling as a wall on one axis of the device and hand."""
-    mass, device_damping, hand_stiffness = (
-        (handle.mass_kg, handle.damping_Ns_per_m, handle.stiffness_N_per_m)
-        if kind == "translation"
-        else (
-            handle.inertia_kgm2,
-            handle.rotational_damping_Nms_per_rad,
-            handle.rotational_stiffness_Nm_per_rad,
-        )
-    )
-    return SampledWall(
-        mass=mass,
-        damping=device_damping,
-        period_s=1.0 / held.scene.device.rate_hz,
-        wall_damping=damping,
-        delay_s=calc_force_delay(held.scene),
-        hand_stiffness=hand_stiffness,
-        true_velocity=True,
-    )
 
 
 def format_limit(value: float) -> str:

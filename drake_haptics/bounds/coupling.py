@@ -68,23 +68,33 @@ class BrokenBound:
 
 
 @dataclass(frozen=True)
-class _Kind:
-    """Names and units of translation or of rotation."""
+class MotionKind:
+    """Names and units of the values of translation or of rotation.
+
+    Attributes:
+        stiffness: Name of the stiffness of a coupling, a hand or a held handle.
+        stiffness_unit: Its unit.
+        damping: Name of the damping, likewise.
+        damping_unit: Its unit.
+        mass: Name of the mass or inertia of a hand or a held handle.
+        mass_unit: Its unit.
+    """
 
     stiffness: str
     stiffness_unit: str
     damping: str
     damping_unit: str
+    mass: str
     mass_unit: str
 
 
-_TRANSLATION = _Kind("stiffness_N_per_m", "N/m", "damping_Ns_per_m", "N·s/m", "kg")
-_ROTATION = _Kind(
-    "rotational_stiffness_Nm_per_rad",
-    "N·m/rad",
-    "rotational_damping_Nms_per_rad",
-    "N·m·s/rad",
-    "kg·m²",
+TRANSLATION = MotionKind(
+    *("stiffness_N_per_m", "N/m", "damping_Ns_per_m", "N·s/m"), *("mass_kg", "kg")
+)
+ROTATION = MotionKind(
+    *("rotational_stiffness_Nm_per_rad", "N·m/rad"),
+    *("rotational_damping_Nms_per_rad", "N·m·s/rad"),
+    *("inertia_kgm2", "kg·m²"),
 )
 
 
@@ -105,11 +115,9 @@ def find_broken_bounds(
         period_s=period_s, mass_kg=handle.mass_kg, inertia_kgm2=handle.inertia_kgm2
     )
     found: list[BrokenBound] = []
-    for kind, m, b in [
-        (_TRANSLATION, handle.mass_kg, handle.damping_Ns_per_m),
-        (_ROTATION, handle.inertia_kgm2, handle.rotational_damping_Nms_per_rad),
-    ]:
+    for kind in (TRANSLATION, ROTATION):
         K, B = getattr(coupling, kind.stiffness), getattr(coupling, kind.damping)
+        m, b = getattr(handle, kind.mass), getattr(handle, kind.damping)
         checked = (
             _check_stiffness(kind, K, B, b, period_s, delay_s),
             _check_damping(kind, K, B, m, period_s),
@@ -129,7 +137,7 @@ def find_exceeded_ratings(
         preset: The device; ratings that are unknown are skipped.
     """
     found: list[BrokenBound] = []
-    for kind in (_TRANSLATION, _ROTATION):
+    for kind in (TRANSLATION, ROTATION):
         for key, unit in (
             (kind.stiffness, kind.stiffness_unit),
             (kind.damping, kind.damping_unit),
@@ -149,7 +157,7 @@ def find_exceeded_ratings(
 
 
 def _check_stiffness(
-    kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
+    kind: MotionKind, K: float, B: float, b: float, period_s: float, delay_s: float
 ) -> BrokenBound | None:
     """Checks K against the law of Gil et al."""
     bound = calc_stable_stiffness(b, B, period_s, delay_s)
@@ -168,7 +176,7 @@ def _check_stiffness(
 
 
 def _check_damping(
-    kind: _Kind, K: float, B: float, m: float, period_s: float
+    kind: MotionKind, K: float, B: float, m: float, period_s: float
 ) -> BrokenBound | None:
     bound = calc_sampled_damping(m, K, period_s)
     if B <= bound:
@@ -194,7 +202,7 @@ def _check_damping(
 
 
 def _check_passivity(
-    kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
+    kind: MotionKind, K: float, B: float, b: float, period_s: float, delay_s: float
 ) -> BrokenBound | None:
     """Checks K and B against the bound of Colgate and Schenkel."""
     bound = calc_passive_damping(K, B, period_s, delay_s)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 
+from drake_haptics.bounds.coupling import ROTATION, TRANSLATION
 from drake_haptics.bounds.explicit_step import (
     calc_largest_point_mobility,
     calc_spatial_mobility,
@@ -82,22 +83,17 @@ def _check_coupling(
 ) -> list[str | None]:
     """Checks translation and rotation of the coupling."""
     mobility = calc_spatial_mobility(plant, tool.body)
+    parts = {TRANSLATION: mobility[3:, 3:], ROTATION: mobility[:3, :3]}
     return [
         check_explicit_stiffness(
             f"coupling of {tool.name!r}",
-            coupling.stiffness_N_per_m,
-            coupling.damping_Ns_per_m,
-            [float(np.linalg.norm(mobility[3:, 3:], 2))],
+            getattr(coupling, kind.stiffness),
+            getattr(coupling, kind.damping),
+            [float(np.linalg.norm(part, 2))],
             plant.time_step(),
-        ),
-        check_explicit_stiffness(
-            f"coupling of {tool.name!r}",
-            coupling.rotational_stiffness_Nm_per_rad,
-            coupling.rotational_damping_Nms_per_rad,
-            [float(np.linalg.norm(mobility[:3, :3], 2))],
-            plant.time_step(),
-            ("N·m/rad", "kg·m²"),
-        ),
+            (kind.stiffness_unit, kind.mass_unit),
+        )
+        for kind, part in parts.items()
     ]
 
 
