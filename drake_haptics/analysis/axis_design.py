@@ -46,15 +46,6 @@ class AxisDevice:
 
 
 @dataclass(frozen=True)
-class AxisHand:
-    """The mass, damping and stiffness that a hand adds to the device."""
-
-    mass: float = 0.0
-    damping: float = 0.0
-    stiffness: float = 0.0
-
-
-@dataclass(frozen=True)
 class GripMargins:
     """Margins of a coupling in one grip.
 
@@ -107,9 +98,7 @@ class AxisDesign:
 
 def design_axis(
     device: AxisDevice,
-    grips: Mapping[str, AxisHand],
-    period_s: float,
-    delay_s: float,
+    grips: Mapping[str, SampledWall],
     margin: float,
     passive_in: str | None,
 ) -> AxisDesign:
@@ -122,9 +111,8 @@ def design_axis(
 
     Args:
         device: The device without a hand.
-        grips: Hands that may hold it, by name.
-        period_s: T, s.
-        delay_s: t_d on top of the hold, s.
+        grips: The device in each hand that may hold it, by the name of the grip, with
+            period and delay, against a wall without stiffness and damping.
         margin: Factor up to which the gains must be stable, above 1.
         passive_in: Name of a grip in which the coupling must also be passive; None for
             no such grip.
@@ -132,17 +120,15 @@ def design_axis(
     Raises:
         ValueError: No stiffness has the margin.
     """
-    held = min(device.damping + hand.damping for hand in grips.values())
-    passive_damping = (
-        device.damping + grips[passive_in].damping if passive_in is not None else None
-    )
+    some = next(iter(grips.values()))
+    period_s, delay_s = some.period_s, some.delay_s
+    dampings = {name: hand.damping + hand.hand_damping for name, hand in grips.items()}
+    held = min(dampings.values())
+    passive_damping = None if passive_in is None else dampings[passive_in]
     B, damping_limit = _least(
         _limit_damping(device, held, period_s, delay_s, margin, passive_damping)
     )
-    walls = {
-        name: make_wall(device, hand, period_s, delay_s, wall_damping=B)
-        for name, hand in grips.items()
-    }
+    walls = {name: replace(hand, wall_damping=B) for name, hand in grips.items()}
     K, stiffness_limit = _least(
         _limit_stiffness(device, held, walls, margin, passive_damping)
     )
@@ -162,28 +148,8 @@ def design_axis(
         device=device,
         margins=tuple(
             _calc_margins(name, walls[name], K, required)
-            for name in sorted(walls, key=lambda name: grips[name].damping)
+            for name in sorted(walls, key=lambda name: grips[name].hand_damping)
         ),
-    )
-
-
-def make_wall(
-    device: AxisDevice,
-    hand: AxisHand,
-    period_s: float,
-    delay_s: float,
-    wall_damping: float = 0.0,
-) -> SampledWall:
-    """Returns the coupling with its tool held still, which makes it stiffest."""
-    return SampledWall(
-        mass=device.mass,
-        damping=device.damping,
-        period_s=period_s,
-        wall_damping=wall_damping,
-        delay_s=delay_s,
-        hand_mass=hand.mass,
-        hand_damping=hand.damping,
-        hand_stiffness=hand.stiffness,
     )
 
 

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydrake.math import RigidTransform
 
-from drake_haptics.analysis.axis_design import (
-    AxisDesign,
-    AxisDevice,
-    AxisHand,
-    design_axis,
-    make_wall,
-)
+from drake_haptics.analysis.axis_design import AxisDesign, AxisDevice, design_axis
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.sampled_wall import calc_largest_stiffness
-from drake_haptics.bounds.coupling import HeldHandle
+from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
+from drake_haptics.bounds.coupling import ROTATION, TRANSLATION, HeldHandle, MotionKind
 from drake_haptics.bounds.held_handle import calc_held_handle
 from drake_haptics.bounds.sampled_spring import (
     calc_passive_stiffness,
@@ -32,7 +24,7 @@ from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.report.plain_data import to_plain_data
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import CouplingParameters
-from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, HandGrip
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant
 
 if TYPE_CHECKING:
@@ -49,12 +41,12 @@ def plot_axis_design(
     design: AxisDesign,
     period_s: float,
     delay_s: float,
-    units: Sequence[str],
+    kind: MotionKind,
 ) -> None:
     """Draws K over B: stability without a hand, passivity, and the chosen gains."""
     device = design.device
     B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
-    free = make_wall(device, AxisHand(), period_s, delay_s)
+    free = SampledWall(device.mass, device.damping, period_s, delay_s=delay_s)
     stable = [calc_largest_stiffness(replace(free, wall_damping=b)) for b in B]
     axes.fill_between(B, stable, color=EIGENVALUE, alpha=0.15)
     axes.plot(B, stable, color=EIGENVALUE, label="stable, let go (exact)")
@@ -89,8 +81,8 @@ def plot_axis_design(
     )
     axes.set_xlim(0.0, B[-1])
     axes.set_ylim(0.0, top)
-    axes.set_xlabel(f"damping, {units[1]}")
-    axes.set_ylabel(f"stiffness, {units[0]}")
+    axes.set_xlabel(f"damping, {kind.damping_unit}")
+    axes.set_ylabel(f"stiffness, {kind.stiffness_unit}")
     axes.legend(
         fontsize="small", ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.15)
     )
@@ -121,19 +113,19 @@ class CouplingDesign:
     def describe(self) -> str:
         """Returns lines of text with the gains and what limits them."""
         lines = [f"At {1.0 / self.period_s:g} Hz and {1e3 * self.delay_s:g} ms delay:"]
-        for kind, axis, stiffness_unit, damping_unit in self._list_kinds():
-            name = "rotational " if kind == "rotation" else ""
+        for kind, axis in self._list_kinds():
+            name = "rotational " if kind is ROTATION else ""
             passive = [m.grip for m in axis.margins if m.is_passive]
             weakest = min(axis.margins, key=lambda m: min(m.stiffness, m.gain))
             lines += [
-                f"{name}stiffness {axis.stiffness:.4g} {stiffness_unit}, limited by"
-                f" {axis.stiffness_limit}",
-                f"{name}damping {axis.damping:.4g} {damping_unit}, limited by"
-                f" {axis.damping_limit}",
+                f"{name}stiffness {axis.stiffness:.4g} {kind.stiffness_unit},"
+                f" limited by {axis.stiffness_limit}",
+                f"{name}damping {axis.damping:.4g} {kind.damping_unit},"
+                f" limited by {axis.damping_limit}",
                 f"  stable with {min(weakest.stiffness, weakest.gain):.3g} times that,"
                 f" the least in the grip '{weakest.grip}'",
-                f"  passive with {axis.required_damping:.4g} {damping_unit} of device"
-                f" and hand: {', '.join(passive) if passive else 'in no grip'}",
+                f"  passive with {axis.required_damping:.4g} {kind.damping_unit} of"
+                f" device and hand: {', '.join(passive) if passive else 'in no grip'}",
             ]
         return "\n".join(lines)
 
@@ -158,17 +150,16 @@ class CouplingDesign:
                 1, len(kinds), figsize=size_inch, layout="tight", squeeze=False
             )
             panels = list(row[0])
-        for panel, (name, design, *units) in zip(panels, kinds, strict=True):
-            plot_axis_design(panel, design, self.period_s, self.delay_s, units)
-            panel.set_title(name)
+        for panel, (kind, design) in zip(panels, kinds, strict=True):
+            plot_axis_design(panel, design, self.period_s, self.delay_s, kind)
+            panel.set_title("rotation" if kind is ROTATION else "translation")
         return panels[0]
 
-    def _list_kinds(self) -> list[tuple[str, AxisDesign, str, str]]:
-        """Returns name, design, and units of stiffness and damping of each kind."""
-        kinds = [("translation", self.translation, "N/m", "N·s/m")]
-        if self.rotation is not None:
-            kinds.append(("rotation", self.rotation, "N·m/rad", "N·m·s/rad"))
-        return kinds
+    def _list_kinds(self) -> list[tuple[MotionKind, AxisDesign]]:
+        """Returns the kinds of motion, each with its design."""
+        if self.rotation is None:
+            return [(TRANSLATION, self.translation)]
+        return [(TRANSLATION, self.translation), (ROTATION, self.rotation)]
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields, ready for JSON."""
@@ -219,29 +210,32 @@ def suggest_coupling(
         raise ValueError(f"hand: '{hand}' is not one of {', '.join(HAND_GRIPS)}")
     handle, preset = _read_device(device)
     period_s = 1.0 / rate_hz
-    design = partial(
-        design_axis, period_s=period_s, delay_s=delay_s, margin=margin, passive_in=hand
-    )
-    translation = design(
-        AxisDevice(
-            handle.mass_kg,
-            handle.damping_Ns_per_m,
-            preset.max_stiffness_N_per_m if preset else None,
-            preset.max_damping_Ns_per_m if preset else None,
-        ),
-        {name: _translation_of(grip) for name, grip in HAND_GRIPS.items()},
-    )
-    rotation = None
-    if preset is None or preset.max_torque_Nm > 0.0:
-        rotation = design(
-            AxisDevice(
-                handle.inertia_kgm2,
-                handle.rotational_damping_Nms_per_rad,
-                preset.max_rotational_stiffness_Nm_per_rad if preset else None,
-                preset.max_rotational_damping_Nms_per_rad if preset else None,
-            ),
-            {name: _rotation_of(grip) for name, grip in HAND_GRIPS.items()},
+
+    def design(kind: MotionKind) -> AxisDesign:
+        axis = AxisDevice(
+            getattr(handle, kind.mass),
+            getattr(handle, kind.damping),
+            # A handle of your own has no ratings.
+            getattr(preset, f"max_{kind.stiffness}", None),
+            getattr(preset, f"max_{kind.damping}", None),
         )
+        free = SampledWall(axis.mass, axis.damping, period_s, delay_s=delay_s)
+        grips = {
+            name: free
+            if grip is None
+            else replace(
+                free,
+                hand_mass=getattr(grip, kind.mass),
+                hand_damping=getattr(grip, kind.damping),
+                hand_stiffness=getattr(grip, kind.stiffness),
+            )
+            for name, grip in HAND_GRIPS.items()
+        }
+        return design_axis(axis, grips, margin, hand)
+
+    translation, rotation = design(TRANSLATION), None
+    if preset is None or preset.max_torque_Nm > 0.0:
+        rotation = design(ROTATION)
     return CouplingDesign(
         coupling=CouplingParameters(
             translation.stiffness,
@@ -254,22 +248,6 @@ def suggest_coupling(
         margin=margin,
         translation=translation,
         rotation=rotation,
-    )
-
-
-def _translation_of(grip: HandGrip | None) -> AxisHand:
-    if grip is None:
-        return AxisHand()
-    return AxisHand(grip.mass_kg, grip.damping_Ns_per_m, grip.stiffness_N_per_m)
-
-
-def _rotation_of(grip: HandGrip | None) -> AxisHand:
-    if grip is None:
-        return AxisHand()
-    return AxisHand(
-        grip.inertia_kgm2,
-        grip.rotational_damping_Nms_per_rad,
-        grip.rotational_stiffness_Nm_per_rad,
     )
 
 
