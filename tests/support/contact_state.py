@@ -108,12 +108,16 @@ class State:
             KV[:m],
         )
 
-    def differentiate_contacts(self) -> _core.AutoDiffContactSet:
-        """The query's answer with its derivatives by `x`."""
+    def differentiate_contacts(
+        self, contacts: _core.ContactSet | None = None
+    ) -> _core.AutoDiffContactSet:
+        """The query's answer, or `contacts` of it, with its derivatives by `x`."""
+        if contacts is None:
+            contacts = self.contacts()
         x = seeded(self.x)
         tool, *poses = (_rows(x, [13 * i], 7) for i in range(len(self.bodies)))
         return _core.differentiate_contacts(
-            self.contacts(), T, self.bodies[0], tool, list(self.bodies[1:]), poses
+            contacts, T, self.bodies[0], tool, list(self.bodies[1:]), poses
         )
 
     def differentiate_wrench(self) -> _core.AutoDiffPenaltyWrench:

@@ -16,6 +16,11 @@ Eigen::Quaternion<T> RotationExp(const Vec3Of<T>& r);
 template <typename T>
 Vec3Of<T> RotationLog(const Eigen::Quaternion<T>& q);
 
+/// The pose without its derivatives.
+inline Pose ValuesOf(const PoseOf<AutoDiff>& X) {
+  return {ValuesOf(X.R), ValuesOf(X.p)};
+}
+
 /// A pose as Drake's vector [qw qx qy qz x y z].
 template <typename T>
 using PoseVectorOf = Eigen::Matrix<T, 7, 1>;

@@ -25,6 +25,10 @@ struct PoseOf {
   PoseOf operator*(const PoseOf& other) const {
     return {R * other.R, R * other.p + p};
   }
+  template <typename To>
+  PoseOf<To> cast() const {
+    return {R.template cast<To>(), p.template cast<To>()};
+  }
   PoseOf inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
 };
 using Pose = PoseOf<double>;

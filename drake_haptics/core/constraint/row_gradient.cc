@@ -71,10 +71,6 @@ void SetValues(const Values& values, Vector* vector) {
 
 }  // namespace
 
-Pose ValuesOf(const PoseOf<AutoDiff>& X) {
-  return {ValuesOf(X.R), ValuesOf(X.p)};
-}
-
 ContactOf<AutoDiff> DifferentiatePieces(const PairContact& pair,
                                         const PiecePair& pieces,
                                         const DisplacedShape& tool,

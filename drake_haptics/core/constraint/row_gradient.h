@@ -1,14 +1,10 @@
 #pragma once
 
-#include "base/autodiff.h"
-#include "base/types.h"
+#include "base/rotation.h"
 #include "constraint/constraint_rows.h"
 #include "law/query_gradient.h"
 
 namespace drake_haptics {
-
-/// The pose without its derivatives.
-Pose ValuesOf(const PoseOf<AutoDiff>& X);
 
 /// Contact of two pieces with derivatives, for fixed features
 /// (frozen_features.h).

@@ -115,16 +115,8 @@ ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set) {
   ContactSet values;
   values.query_seconds = set.query_seconds;
   for (const ContactOf<AutoDiff>& contact : set.contacts) {
-    Contact& plain = values.contacts.emplace_back();
-    plain.support = contact.support;
-    plain.object = contact.object;
-    plain.piece_A = contact.piece_A;
-    plain.piece_B = contact.piece_B;
-    plain.feature_A = contact.feature_A;
-    plain.feature_B = contact.feature_B;
-    plain.status = contact.status;
+    values.contacts.push_back(WithNumbersOf<double>(contact));
   }
-  Zip(set, values, CopyValue);
   return values;
 }
 

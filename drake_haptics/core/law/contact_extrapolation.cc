@@ -59,7 +59,7 @@ void ContactExtrapolation::Advance(const MovedBodyOf<T>& tool,
     const auto& rest = X_WO_[contact.object];
     MovedBodyOf<T> at_rest;
     if (rest) {
-      at_rest.X_WB = {rest->R.template cast<T>(), rest->p.template cast<T>()};
+      at_rest.X_WB = rest->template cast<T>();
       at_rest.X_WB_found = at_rest.X_WB;
     }
     const MovedBodyOf<T>& B = rest ? at_rest : moving[place_[contact.object]];

@@ -18,34 +18,6 @@ constexpr double kNear = 2.0 / 3, kFar = -1.0 / 12;
 using Rows5 = Eigen::Matrix<double, 5, 1>;
 using Rows5X6 = Eigen::Matrix<double, 5, 6>;
 
-Pose ValuesOf(const PoseOf<AutoDiff>& X) {
-  return {drake_haptics::ValuesOf(X.R), drake_haptics::ValuesOf(X.p)};
-}
-
-PoseOf<AutoDiff> Constant(const Pose& X) {
-  return {X.R.cast<AutoDiff>(), X.p.cast<AutoDiff>()};
-}
-
-ContactOf<AutoDiff> Constant(const Contact& contact) {
-  return {
-      .distance = contact.distance,
-      .nhat_BA_W = contact.nhat_BA_W.cast<AutoDiff>(),
-      .p_WCa = contact.p_WCa.cast<AutoDiff>(),
-      .p_WCb = contact.p_WCb.cast<AutoDiff>(),
-      .p_WC = contact.p_WC.cast<AutoDiff>(),
-      .extent = contact.extent,
-      .flushness = contact.flushness,
-      .support = contact.support,
-      .object = contact.object,
-      .piece_A = contact.piece_A,
-      .piece_B = contact.piece_B,
-      .feature_A = contact.feature_A,
-      .feature_B = contact.feature_B,
-      .status = contact.status,
-      .is_part = contact.is_part,
-  };
-}
-
 void SetGradient(const Vec3Of<AutoDiff>& from, Vec3Of<AutoDiff>* to) {
   for (int i = 0; i < 3; ++i) {
     (*to)[i].derivatives() = from[i].derivatives();
@@ -145,10 +117,11 @@ ContactOf<AutoDiff> Differentiate(const Contact& found, double tolerance,
   RequireFeatures(found);
   const Polytope& A = tool.shape->pieces.at(found.piece_A);
   const Polytope& B = object.shape->pieces.at(found.piece_B);
-  const MovedBodyOf<AutoDiff> body_A{Constant(ValuesOf(tool.X_WB)), tool.X_WB};
-  const MovedBodyOf<AutoDiff> body_B{Constant(ValuesOf(object.X_WB)),
+  const MovedBodyOf<AutoDiff> body_A{ValuesOf(tool.X_WB).cast<AutoDiff>(),
+                                     tool.X_WB};
+  const MovedBodyOf<AutoDiff> body_B{ValuesOf(object.X_WB).cast<AutoDiff>(),
                                      object.X_WB};
-  ContactOf<AutoDiff> contact = Constant(found);
+  ContactOf<AutoDiff> contact = WithNumbersOf<AutoDiff>(found);
   const FeatureContactOf<AutoDiff> moving =
       EvaluateFeatures<AutoDiff>({A, body_A}, {B, body_B}, contact);
   contact.distance.derivatives() = moving.distance.derivatives();

@@ -48,6 +48,27 @@ void RequireFeatures(const ContactOf<T>& contact);
 Feature RequireFeature(const Polytope& piece,
                        const std::array<std::int32_t, 2>& kind_and_index);
 
+/// The contact with numbers of another type, without derivatives.
+template <typename To, typename From>
+ContactOf<To> WithNumbersOf(const ContactOf<From>& from) {
+  const auto number = [](const From& x) { return To(ValueOf(x)); };
+  return {number(from.distance),
+          from.nhat_BA_W.unaryExpr(number),
+          from.p_WCa.unaryExpr(number),
+          from.p_WCb.unaryExpr(number),
+          from.p_WC.unaryExpr(number),
+          number(from.extent),
+          number(from.flushness),
+          from.support,
+          from.object,
+          from.piece_A,
+          from.piece_B,
+          from.feature_A,
+          from.feature_B,
+          from.status,
+          from.is_part};
+}
+
 /// The contact of a pair in the world frame, with object and pieces left at
 /// zero.
 Contact InWorld(const PairContact& pair, const Pose& X_WA);

@@ -32,7 +32,7 @@ def test_every_column_has_its_derivatives(pairs, name: str) -> None:
     )
 
 
-def test_parts_of_a_cut_face_have_their_derivatives() -> None:
+def states_on_a_cut_face(count: int) -> list[State]:
     """An edge tilts on a plate whose top is in pieces: their extents fade."""
 
     def touch(rng, tool, solid, tolerance):
@@ -43,12 +43,29 @@ def test_parts_of_a_cut_face_have_their_derivatives() -> None:
         gap = rng.uniform(-0.2, 0.8) * tolerance
         return np.array([*np.roll(turn.as_quat(), 1), *at, TOP_M + gap])
 
-    states = random_states(
-        make_slide_tools()["edge"], fifty_pieces(), "shared", 40, touch=touch
+    return random_states(
+        make_slide_tools()["edge"], fifty_pieces(), "shared", count, touch=touch
     )
+
+
+def test_parts_of_a_cut_face_have_their_derivatives() -> None:
     check_every_column(
-        states, State.contacts, State.differentiate_contacts, COLUMNS, STEP
+        states_on_a_cut_face(40),
+        State.contacts,
+        State.differentiate_contacts,
+        COLUMNS,
+        STEP,
     )
+
+
+def test_values_have_the_derivatives_of_the_query_again() -> None:
+    for state in states_on_a_cut_face(10):
+        found = state.differentiate_contacts()
+        again = state.differentiate_contacts(found.value)
+        for key in COLUMNS:
+            np.testing.assert_array_equal(
+                getattr(again, key).gradient, getattr(found, key).gradient
+            )
 
 
 def test_values_are_those_of_the_query(pairs) -> None:
