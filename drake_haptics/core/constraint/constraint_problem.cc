@@ -57,15 +57,6 @@ double LineMinimum(const ConstraintProblem& problem, const Vec6& start,
 
 }  // namespace
 
-Vec6 ConstraintProblem::Gradient(const Vec6& motion) const {
-  Vec6 gradient = H * motion - r;
-  for (const OneSidedSpring& spring : springs) {
-    const double force = spring.Force(motion);
-    if (force > 0) gradient -= force * spring.a;
-  }
-  return gradient;
-}
-
 ConstraintSolution SolveConstraintProblem(const ConstraintProblem& problem,
                                           const Vec6& start,
                                           ConstraintWorkspace* workspace,

@@ -33,9 +33,6 @@ struct ConstraintProblem {
   Mat6 H = Mat6::Identity();
   Vec6 r = Vec6::Zero();
   std::vector<OneSidedSpring> springs;
-
-  /// H ξ − r − Σ λ_i a_i.
-  Vec6 Gradient(const Vec6& motion) const;
 };
 
 struct ConstraintSolution {
@@ -53,7 +50,6 @@ struct ConstraintWorkspace {
     double change = 0;  ///< change of the second derivative
   };
   std::vector<Kink> kinks;
-  std::vector<double> rises;  ///< of each spring's aᵀ ξ along the direction
 };
 
 /// Bound on iterations, far above those that problems were seen to need.

@@ -42,8 +42,9 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
 
 double SupportGap(const PosedPair& pair, const Vec3& n,
                   MinkowskiVertex* vertex_pair) {
-  vertex_pair->a = pair.SupportA(-n, vertex_pair->a);
-  vertex_pair->b = pair.SupportB(n, vertex_pair->b);
+  vertex_pair->a = SupportVertex(pair.A, -n, vertex_pair->a);
+  vertex_pair->b =
+      SupportVertex(pair.B, pair.X_AB.R.transpose() * n, vertex_pair->b);
   return n.dot(pair.a(vertex_pair->a) - pair.b(vertex_pair->b));
 }
 

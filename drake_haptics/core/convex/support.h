@@ -52,12 +52,6 @@ struct PosedPair {
 
   Vec3 a(int i) const { return A.vertices[i]; }
   Vec3 b(int j) const { return X_AB * B.vertices[j]; }
-  int SupportA(const Vec3& n, int start) const {
-    return SupportVertex(A, n, start);
-  }
-  int SupportB(const Vec3& n, int start) const {
-    return SupportVertex(B, X_AB.R.transpose() * n, start);
-  }
   /// Length to which round-off is compared, m.
   double scale() const { return A.radius + B.radius; }
 };

@@ -135,12 +135,6 @@ void Keep(const Face& face, Simplex* simplex) {
 
 }  // namespace
 
-bool SimplexVertexPairs::operator==(const SimplexVertexPairs& other) const {
-  return size == other.size &&
-         std::equal(vertex_pairs.begin(), vertex_pairs.begin() + size,
-                    other.vertex_pairs.begin());
-}
-
 void ReduceToClosest(Simplex* simplex) {
   assert(simplex->size >= 1 && simplex->size <= 4);
   switch (simplex->size) {

@@ -12,7 +12,6 @@ namespace drake_haptics {
 struct SimplexVertexPairs {
   std::array<MinkowskiVertex, 4> vertex_pairs;
   int size = 0;
-  bool operator==(const SimplexVertexPairs& other) const;
 };
 
 /// Up to four vertices of A ⊖ B at a pose, with the weights of the point of
