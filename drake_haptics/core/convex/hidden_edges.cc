@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/sort_unique.h"
 #include "convex/affine_basis.h"
 #include "convex/convex_hull.h"
 #include "convex/predicates.h"
@@ -76,8 +77,7 @@ void FillHiddenEdges(Polytope* P) {
       }
     }
   }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  SortUnique(&ends);
   if (ends.empty()) return;
   P->hidden_start.assign(P->vertices.size() + 1, 0);
   for (const auto& [from, to] : ends) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/sort_unique.h"
 #include "convex/affine_basis.h"
 #include "convex/convex_hull.h"
 #include "convex/convex_polygon.h"
@@ -94,8 +95,7 @@ std::vector<int> ExtremePoints(const AffineBasis& basis,
   for (const HullShape::Polygon& polygon : polygons) {
     extreme.insert(extreme.end(), polygon.loop.begin(), polygon.loop.end());
   }
-  std::sort(extreme.begin(), extreme.end());
-  extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
+  SortUnique(&extreme);
   return extreme;
 }
 

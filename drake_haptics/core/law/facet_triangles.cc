@@ -69,9 +69,7 @@ std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
   const PieceVertices vertices(piece);
   std::vector<int> facets;
   for (const int t : triangles) {
-    std::array<Vec3, 3> corners;
-    for (int k = 0; k < 3; ++k)
-      corners[k] = mesh.vertices[mesh.triangles[t][k]];
+    const auto corners = CornersOf(mesh.vertices, mesh.triangles[t]);
     BestFacet best(piece, corners);
     if (best.has_area()) {
       for (const Vec3& corner : corners) {

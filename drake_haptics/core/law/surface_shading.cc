@@ -162,12 +162,10 @@ std::vector<ShadedFacet> SurfaceShading::MakeFacets(
   std::vector<std::vector<ShadedTriangle>> triangles_of(piece.facets.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (facet_of[i] < 0) continue;
-    ShadedTriangle triangle{{}, normals.corners[triangles[i]]};
-    for (int k = 0; k < 3; ++k) {
-      triangle.points[k] =
-          decomposition_->vertices[decomposition_->triangles[triangles[i]][k]];
-    }
-    triangles_of[facet_of[i]].push_back(triangle);
+    triangles_of[facet_of[i]].push_back(
+        {CornersOf(decomposition_->vertices,
+                   decomposition_->triangles[triangles[i]]),
+         normals.corners[triangles[i]]});
   }
   std::vector<ShadedFacet> facets;
   for (std::size_t f = 0; f < piece.facets.size(); ++f) {

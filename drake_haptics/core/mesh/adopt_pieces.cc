@@ -1,11 +1,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "mesh/convex_clip.h"
 #include "mesh/decomposition.h"
-#include "mesh/decomposition_input.h"
 #include "mesh/mesh_coverage.h"
 #include "mesh/patch_surroundings.h"
 
@@ -38,9 +36,7 @@ Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
   if (!(tolerance >= 0)) {
     throw std::invalid_argument("the tolerance must be zero or more, in m");
   }
-  std::vector<int> all(triangles.size());
-  std::iota(all.begin(), all.end(), 0);
-  const MeshCoverage mesh(vertices, triangles, all);
+  const MeshCoverage mesh(vertices, {triangles.begin(), triangles.end()});
   Decomposition result;
   result.vertices.assign(vertices.begin(), vertices.end());
   result.triangles.assign(triangles.begin(), triangles.end());

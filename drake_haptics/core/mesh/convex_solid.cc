@@ -5,6 +5,7 @@
 
 #include "convex/affine_basis.h"
 #include "convex/convex_hull.h"
+#include "mesh/mesh_edges.h"
 
 namespace drake_haptics {
 namespace {
@@ -72,13 +73,7 @@ bool BoundsMaterial(const SurfaceMesh& mesh, std::span<const int> triangles) {
 std::vector<Plane> FindConvexSolid(const SurfaceMesh& mesh,
                                    std::span<const int> triangles) {
   if (!BoundsMaterial(mesh, triangles)) return {};
-  std::vector<int> used;
-  for (const int t : triangles) {
-    const Triangle& triangle = mesh.triangles[t];
-    used.insert(used.end(), triangle.begin(), triangle.end());
-  }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const std::vector<int> used = VerticesOf(mesh.triangles, triangles);
   std::vector<Vec3> points;
   Eigen::AlignedBox3d box;
   for (const int v : used) {

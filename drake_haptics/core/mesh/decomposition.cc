@@ -25,7 +25,6 @@
 #include <string>
 
 #include "convex/hull_shape.h"
-#include "mesh/decomposition_input.h"
 #include "mesh/patch_growth.h"
 #include "mesh/surface_mesh.h"
 #include "mesh/surface_piece.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -10,6 +11,12 @@
 namespace drake_haptics {
 
 using Triangle = Eigen::Vector3i;
+
+/// Corners of a triangle, m.
+inline std::array<Vec3, 3> CornersOf(std::span<const Vec3> vertices,
+                                     const Triangle& triangle) {
+  return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
+}
 
 /// A mesh and the convex pieces that stand for its surface.
 struct Decomposition {
@@ -24,6 +31,11 @@ struct Decomposition {
 /// Triangles of each of `num_pieces` pieces; those of no piece are left out.
 std::vector<std::vector<int>> TrianglesOfPieces(
     std::span<const int> piece_of_triangle, int num_pieces);
+
+/// @throws std::invalid_argument if there is no triangle, an index is out of
+/// range or a coordinate is not finite and below 1e50 m.
+void CheckMesh(std::span<const Vec3> vertices,
+               std::span<const Triangle> triangles);
 
 /// Called now and then with the share done in [0, 1]; stops the work if it
 /// returns false.

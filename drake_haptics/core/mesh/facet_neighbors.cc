@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
+#include "base/sort_unique.h"
 #include "convex/normal_cone_support.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/surface_mesh.h"
@@ -107,12 +107,6 @@ class Search {
   double tolerance_;
 };
 
-auto KeyOf(const std::pair<int, FacetNeighbor>& entry) {
-  const auto& [place, n] = entry;
-  return std::tuple(place, n.side, n.piece, n.facet, n.side_of_neighbor,
-                    n.is_flush);
-}
-
 }  // namespace
 
 FacetNeighbors::FacetNeighbors(const Decomposition& decomposition) {
@@ -131,14 +125,8 @@ FacetNeighbors::FacetNeighbors(const Decomposition& decomposition) {
     first_facet_.clear();
     return;
   }
-  std::sort(found.begin(), found.end(),
-            [](const auto& p, const auto& q) { return KeyOf(p) < KeyOf(q); });
   // A side may be a chain of mesh edges, each of which adds the neighbor.
-  found.erase(std::unique(found.begin(), found.end(),
-                          [](const auto& p, const auto& q) {
-                            return KeyOf(p) == KeyOf(q);
-                          }),
-              found.end());
+  SortUnique(&found);
   start_.assign(num_facets() + 1, 0);
   for (const auto& [place, neighbor] : found) {
     ++start_[place + 1];

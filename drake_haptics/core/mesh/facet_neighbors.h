@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct FacetNeighbor {
   int facet = -1;
   int side_of_neighbor = -1;  ///< the same edge in the neighbor's loop
   bool is_flush = false;      ///< in one plane; else the edge is concave
+  auto operator<=>(const FacetNeighbor&) const = default;
 };
 
 /// Neighbors of the facets of a decomposition: facets of other pieces, in which

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "base/sort_unique.h"
 #include "convex/hull_shape.h"
-#include "mesh/decomposition_input.h"
 #include "mesh/hull_deviation.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/surface_distance.h"
@@ -55,11 +55,10 @@ class Merger {
         num_pieces_(1 + *std::max_element(piece_of_triangle.begin(),
                                           piece_of_triangle.end())),
         groups_(num_pieces_) {
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      auto& corners = groups_[piece_of_triangle[t]].corners;
-      corners.insert(corners.end(), triangles[t].begin(), triangles[t].end());
+    const auto members = TrianglesOfPieces(piece_of_triangle, num_pieces_);
+    for (int a = 0; a < num_pieces_; ++a) {
+      groups_[a].corners = VerticesOf(triangles, members[a]);
     }
-    for (Group& group : groups_) SortUnique(&group.corners);
     const std::vector<TriangleSide> sides = SortedSides(triangles);
     ForEachMeshEdge(sides, [&](std::span<const TriangleSide> around) {
       for (const TriangleSide& side : around) {
@@ -92,11 +91,6 @@ class Merger {
   }
 
  private:
-  static void SortUnique(std::vector<int>* items) {
-    std::sort(items->begin(), items->end());
-    items->erase(std::unique(items->begin(), items->end()), items->end());
-  }
-
   void Step() {
     const Candidate next = queue_.top();
     queue_.pop();
@@ -266,16 +260,12 @@ Polytope MakeMergedPiece(const SurfaceDistance& surface,
                          std::span<const Triangle> triangles,
                          std::span<const int> members, double tolerance,
                          double error) {
-  std::vector<int> corners;
   Vec3 facing = Vec3::Zero();
-  for (const int t : members) {
-    corners.insert(corners.end(), triangles[t].begin(), triangles[t].end());
-    facing += surface.area_vector_of(t);
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  for (const int t : members) facing += surface.area_vector_of(t);
   std::vector<Vec3> points;
-  for (const int v : corners) points.push_back(vertices[v]);
+  for (const int v : VerticesOf(triangles, members)) {
+    points.push_back(vertices[v]);
+  }
   const double on_facet = 2 * kFacetTolerances * tolerance;
   HullShape shape = FindHullShape(
       points, kFacetTolerances * tolerance,
@@ -330,12 +320,9 @@ Decomposition AssembleMergedPieces(std::span<const Vec3> vertices,
     if (group == std::ssize(pieces_of_group)) pieces_of_group.emplace_back();
     pieces_of_group[group].push_back(piece);
   }
-  std::vector<std::vector<int>> members(pieces_of_group.size());
-  for (int t = 0; t < std::ssize(triangles); ++t) {
-    int& label = exact.piece_of_triangle[t];
-    label = group_of_piece[label];
-    members[label].push_back(t);
-  }
+  for (int& label : exact.piece_of_triangle) label = group_of_piece[label];
+  const auto members = TrianglesOfPieces(
+      exact.piece_of_triangle, static_cast<int>(pieces_of_group.size()));
   const SurfaceDistance surface(vertices, triangles, solid);
   const double tolerance = SurfaceTolerance(vertices, triangles);
   std::vector<Polytope> pieces;

@@ -1,18 +1,12 @@
 #include "mesh/mesh_coverage.h"
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "mesh/convex_clip.h"
 
 namespace drake_haptics {
 namespace {
-
-std::vector<Triangle> Members(std::span<const Triangle> triangles,
-                              std::span<const int> members) {
-  std::vector<Triangle> chosen;
-  for (const int t : members) chosen.push_back(triangles[t]);
-  return chosen;
-}
 
 // The prism about a polygon: its sides, and the slab of +- tolerance.
 std::vector<Plane> Prism(std::span<const Vec3> polygon, const Vec3& normal,
@@ -32,12 +26,10 @@ std::vector<Plane> Prism(std::span<const Vec3> polygon, const Vec3& normal,
 }  // namespace
 
 MeshCoverage::MeshCoverage(std::span<const Vec3> vertices,
-                           std::span<const Triangle> triangles,
-                           std::span<const int> members)
+                           std::vector<Triangle> triangles)
     : vertices_(vertices),
-      triangles_(triangles),
-      members_(members),
-      tree_(TriangleBoxes(vertices, Members(triangles, members))) {}
+      triangles_(std::move(triangles)),
+      tree_(TriangleBoxes(vertices_, triangles_)) {}
 
 double MeshCoverage::CoveredArea(std::span<const Vec3> polygon,
                                  const Vec3& normal, double tolerance) const {
@@ -48,9 +40,8 @@ double MeshCoverage::CoveredArea(std::span<const Vec3> polygon,
     box.extend(corner - Vec3::Constant(tolerance));
   }
   double covered = 0;
-  tree_.AnyOverlap(box, [&](int member) {
-    const Triangle& t = triangles_[members_[member]];
-    const Vec3 &a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
+  tree_.AnyOverlap(box, [&](int t) {
+    const auto [a, b, c] = CornersOf(vertices_, triangles_[t]);
     if ((b - a).cross(c - a).dot(normal) > 0) {
       covered += PolygonArea(ClipPolygon({a, b, c}, prism, 0));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "mesh/aabb_tree.h"
 #include "mesh/decomposition.h"
@@ -10,11 +11,9 @@ namespace drake_haptics {
 /// Measures how much of a convex polygon some triangles of a mesh cover.
 class MeshCoverage {
  public:
-  /// @param vertices, triangles of the mesh; they must outlive this.
-  /// @param members the triangles that count.
-  MeshCoverage(std::span<const Vec3> vertices,
-               std::span<const Triangle> triangles,
-               std::span<const int> members);
+  /// @param vertices of the mesh; they must outlive this.
+  /// @param triangles those that count.
+  MeshCoverage(std::span<const Vec3> vertices, std::vector<Triangle> triangles);
 
   /// Area, m², of the triangles that face as the polygon does, clipped to the
   /// prism within `tolerance` (m) above and below the polygon.
@@ -24,8 +23,7 @@ class MeshCoverage {
 
  private:
   std::span<const Vec3> vertices_;
-  std::span<const Triangle> triangles_;
-  std::span<const int> members_;
+  std::vector<Triangle> triangles_;
   AabbTree tree_;
 };
 

@@ -3,7 +3,19 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/sort_unique.h"
+
 namespace drake_haptics {
+
+std::vector<int> VerticesOf(std::span<const Triangle> triangles,
+                            std::span<const int> members) {
+  std::vector<int> vertices;
+  for (const int t : members) {
+    vertices.insert(vertices.end(), triangles[t].begin(), triangles[t].end());
+  }
+  SortUnique(&vertices);
+  return vertices;
+}
 
 std::vector<TriangleSide> SortedSides(std::span<const Triangle> triangles) {
   std::vector<TriangleSide> sides;

@@ -7,6 +7,11 @@
 
 namespace drake_haptics {
 
+/// The vertices of some triangles, ascending.
+/// @param members indices in `triangles`.
+std::vector<int> VerticesOf(std::span<const Triangle> triangles,
+                            std::span<const int> members);
+
 /// One side of a triangle: edge k runs from corner k to corner k + 1.
 struct TriangleSide {
   int low, high;  ///< vertices, low < high

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/sort_unique.h"
 #include "mesh/convex_solid.h"
 #include "mesh/patch.h"
 
@@ -60,11 +61,8 @@ class Growth {
 
  private:
   void TakeConvexComponents() {
-    std::vector<std::vector<int>> members(mesh_.num_components);
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      members[mesh_.component[t]].push_back(static_cast<int>(t));
-    }
-    for (const std::vector<int>& triangles : members) {
+    for (const std::vector<int>& triangles :
+         TrianglesOfPieces(mesh_.component, mesh_.num_components)) {
       const std::vector<Plane> planes = FindConvexSolid(mesh_, triangles);
       if (planes.empty()) continue;
       for (const int t : triangles) work_.label[t] = num_patches_;
@@ -174,8 +172,7 @@ class Growth {
 
   static std::vector<int> WithoutGaps(std::vector<int> label) {
     std::vector<int> used = label;
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
+    SortUnique(&used);
     for (int& l : label) {
       l = static_cast<int>(std::lower_bound(used.begin(), used.end(), l) -
                            used.begin());

@@ -137,13 +137,7 @@ const MeshRing& MeshTopology::RingAt(int vertex) {
   std::optional<MeshRing>& ring = rings[vertex];
   if (ring) return *ring;
   ring.emplace();
-  std::vector<int> ends;
-  for (const int t : triangles_at(vertex)) {
-    for (const int w : triangles[t]) ends.push_back(w);
-  }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  for (const int w : ends) {
+  for (const int w : VerticesOf(triangles, triangles_at(vertex))) {
     const Vec3 along = vertices[w] - vertices[vertex];
     if (!along.isZero(0)) ring->edges.push_back(along.stableNormalized());
   }

@@ -38,10 +38,8 @@ bool SolidContainment::MeetInterior(std::span<const Plane> planes,
     const int other = mesh_.component[t];
     if (label_of_triangle[t] == label) return false;
     if (other != component && !is_cavity_[other]) return false;
-    const Triangle& v = mesh_.triangles[t];
-    return MeetsInterior(
-        {mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]},
-        planes, kInsetTolerances * mesh_.tolerance);
+    return MeetsInterior(CornersOf(mesh_.vertices, mesh_.triangles[t]), planes,
+                         kInsetTolerances * mesh_.tolerance);
   });
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/decomposition_input.h"
 #include "mesh/nearest_on_triangle.h"
 
 namespace drake_haptics {
@@ -25,7 +24,7 @@ double Farthest(const SurfaceDistance& surface, std::span<const Vec3> vertices,
   std::vector<std::array<Vec3, 3>> corners;
   AabbTree::Box box;
   for (const Triangle& t : triangles) {
-    corners.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
+    corners.push_back(CornersOf(vertices, t));
     for (const Vec3& v : corners.back()) box.extend(v);
   }
   return surface.BoundFarthest(corners, std::numeric_limits<double>::infinity(),

@@ -38,9 +38,7 @@ class SurfaceDistance {
 
   const AabbTree& tree() const { return tree_; }
   std::array<Vec3, 3> corners_of(int t) const {
-    return {topology_.vertices[topology_.triangles[t][0]],
-            topology_.vertices[topology_.triangles[t][1]],
-            topology_.vertices[topology_.triangles[t][2]]};
+    return CornersOf(topology_.vertices, topology_.triangles[t]);
   }
   /// Twice the triangle's area along its normal, m².
   const Vec3& area_vector_of(int t) const { return area_vectors_[t]; }

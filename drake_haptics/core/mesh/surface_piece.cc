@@ -52,7 +52,9 @@ void TurnFrontToMesh(const Vec3& normal, HullShape* shape) {
 
 HullShape FindOpenShape(const MeshTopology& mesh, std::span<const int> patch,
                         std::span<const Vec3> points, double tolerance) {
-  const MeshCoverage cover(mesh.vertices, mesh.triangles, patch);
+  std::vector<Triangle> triangles;
+  for (const int t : patch) triangles.push_back(mesh.triangles[t]);
+  const MeshCoverage cover(mesh.vertices, std::move(triangles));
   const auto is_on_surface = [&](const std::array<int, 3>& corners,
                                  const Vec3& normal) {
     const std::array<Vec3, 3> polygon{points[corners[0]], points[corners[1]],
@@ -122,13 +124,7 @@ std::vector<int> FindLost(const MeshTopology& mesh, std::span<const int> patch,
 SurfacePiece MakeSurfacePiece(std::span<const int> patch, double tolerance,
                               MeshTopology* mesh) {
   assert(!patch.empty() && std::is_sorted(patch.begin(), patch.end()));
-  std::vector<int> corners;
-  for (const int t : patch) {
-    const Triangle& triangle = mesh->triangles[t];
-    corners.insert(corners.end(), triangle.begin(), triangle.end());
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  const std::vector<int> corners = VerticesOf(mesh->triangles, patch);
   std::vector<Vec3> points;
   for (const int v : corners) points.push_back(mesh->vertices[v]);
 
