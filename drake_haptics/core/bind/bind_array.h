@@ -17,6 +17,11 @@ namespace drake_haptics {
 using PointsArg = nanobind::ndarray<const double, nanobind::shape<-1, 3>,
                                     nanobind::c_contig, nanobind::device::cpu>;
 
+/// (n,) numbers, likewise.
+template <typename T>
+using NumbersArg = nanobind::ndarray<const T, nanobind::shape<-1>,
+                                     nanobind::c_contig, nanobind::device::cpu>;
+
 inline std::vector<Vec3> ToPoints(const PointsArg& array) {
   std::vector<Vec3> points(array.shape(0));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -48,11 +53,15 @@ Rows<Scalar, 1> ToArray(const std::vector<Item>& items, Member Item::* member) {
       items, [member](const Item& item, int) { return item.*member; });
 }
 
-/// (n, 3) array of vectors, or of one vector member of each item.
-inline Rows<double, 3> ToArray3(const std::vector<Vec3>& vectors) {
-  return ToRows<double, 3>(vectors, [](const Vec3& v, int k) { return v[k]; });
+/// (n, size) array of vectors.
+template <int size>
+Rows<double, size> ToRows(
+    const std::vector<Eigen::Matrix<double, size, 1>>& vectors) {
+  return ToRows<double, size>(vectors,
+                              [](const auto& v, int k) { return v[k]; });
 }
 
+/// (n, 3) array of one vector member of each item.
 template <typename Item>
 Rows<double, 3> ToArray3(const std::vector<Item>& items, Vec3 Item::* member) {
   return ToRows<double, 3>(

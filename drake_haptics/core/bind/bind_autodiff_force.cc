@@ -95,15 +95,6 @@ void RequireVector(const AutoDiffVector& vector, Eigen::Index size,
   }
 }
 
-// Frame i of frames that are stored one after another.
-MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
-                                const AutoDiffVector& V_WF, Eigen::Index i) {
-  MovingFrameOf<AutoDiff> frame;
-  for (int k = 0; k < 3; ++k) frame.p_WF[k] = p_WF(3 * i + k);
-  for (int k = 0; k < 6; ++k) frame.V_WF[k] = V_WF(6 * i + k);
-  return frame;
-}
-
 AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
                               const AutoDiffVector& p_WTo,
                               const AutoDiffVector& V_WT,
@@ -136,18 +127,6 @@ AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
                                  materials),
             &wrench);
   return wrench;
-}
-
-// The entries of vectors, one vector after another.
-template <int Size>
-AutoDiffVector Flat(
-    const std::vector<Eigen::Matrix<AutoDiff, Size, 1>>& vectors,
-    Eigen::Index num_derivatives) {
-  VectorOf<AutoDiff> all(Size * vectors.size());
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    all.segment<Size>(Size * i) = vectors[i];
-  }
-  return ToAutoDiffVector(all, num_derivatives);
 }
 
 void BindWrench(nb::module_& m) {

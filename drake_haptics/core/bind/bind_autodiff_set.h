@@ -13,6 +13,28 @@
 /// Bindings that sets with derivatives have in common.
 namespace drake_haptics {
 
+/// The entries of vectors, one vector after another.
+template <int Size>
+AutoDiffVector Flat(
+    const std::vector<Eigen::Matrix<AutoDiff, Size, 1>>& vectors,
+    Eigen::Index num_derivatives) {
+  VectorOf<AutoDiff> all(Size * vectors.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    all.segment<Size>(Size * i) = vectors[i];
+  }
+  return ToAutoDiffVector(all, num_derivatives);
+}
+
+/// Frame i of frames that are stored one after another.
+inline MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
+                                       const AutoDiffVector& V_WF,
+                                       Eigen::Index i) {
+  MovingFrameOf<AutoDiff> frame;
+  for (int k = 0; k < 3; ++k) frame.p_WF[k] = p_WF(3 * i + k);
+  for (int k = 0; k < 6; ++k) frame.V_WF[k] = V_WF(6 * i + k);
+  return frame;
+}
+
 /// The entries of a vector member of each item, one item after another.
 template <typename Item, typename Member>
 AutoDiffVector GradientColumn(const std::vector<Item>& items,

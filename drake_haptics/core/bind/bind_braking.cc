@@ -1,9 +1,9 @@
 #include <stdexcept>
 
 #include "bind/bind.h"
+#include "bind/bind_autodiff_set.h"
 #include "bind/bind_eigen.h"
 #include "bind/bind_objects.h"
-#include "law/autodiff_sets.h"
 #include "law/braking.h"
 
 namespace nb = nanobind;
@@ -29,10 +29,9 @@ AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
     throw std::invalid_argument(
         "p_WO and V_WO must have 3 and 6 numbers for each object");
   }
-  std::vector<MovingFrameOf<AutoDiff>> objects(count);
+  std::vector<MovingFrameOf<AutoDiff>> objects;
   for (Eigen::Index i = 0; i < count; ++i) {
-    for (int k = 0; k < 3; ++k) objects[i].p_WF[k] = p_WO(3 * i + k);
-    for (int k = 0; k < 6; ++k) objects[i].V_WF[k] = V_WO(6 * i + k);
+    objects.push_back(FrameOf(p_WO, V_WO, i));
   }
   return ToAutoDiffVector(
       ToVector(ComputeBraking<AutoDiff>(

@@ -3,54 +3,39 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include <array>
 #include <type_traits>
 #include <vector>
-
-#include "base/types.h"
 
 /// Read-only NumPy views of one member of each item of a vector. Nothing is
 /// copied: the array keeps the Python object alive that owns the vector, which
 /// must not change any more.
 namespace drake_haptics {
 
-/// (n,) view of a scalar member.
-template <typename Item, typename Scalar>
-auto Column(nanobind::handle owner, const std::vector<Item>& items,
-            Scalar Item::* member) {
-  static_assert(sizeof(Item) % sizeof(Scalar) == 0);
-  using Array =
-      nanobind::ndarray<nanobind::numpy, const Scalar, nanobind::shape<-1>>;
-  const Scalar* data = items.empty() ? nullptr : &(items.front().*member);
-  const std::size_t shape[1] = {items.size()};
-  const std::int64_t strides[1] = {sizeof(Item) / sizeof(Scalar)};
-  return Array(data, 1, shape, owner, strides);
-}
+/// The numbers of a member: a scalar, a vector, or a small array.
+template <typename Member>
+struct MemberNumbers {
+  using Scalar = typename Member::value_type;
+  using Shape = nanobind::shape<-1, sizeof(Member) / sizeof(Scalar)>;
+};
+template <typename Number>
+  requires std::is_arithmetic_v<Number>
+struct MemberNumbers<Number> {
+  using Scalar = Number;
+  using Shape = nanobind::shape<-1>;
+};
 
-/// (n, 3) view of a vector member.
-template <typename Item>
+/// (n,) or (n, size) view of a member.
+template <typename Item, typename Member>
 auto Column(nanobind::handle owner, const std::vector<Item>& items,
-            Vec3 Item::* member) {
-  static_assert(sizeof(Item) % sizeof(double) == 0);
-  using Array =
-      nanobind::ndarray<nanobind::numpy, const double, nanobind::shape<-1, 3>>;
-  const double* data = items.empty() ? nullptr : (items.front().*member).data();
-  const std::size_t shape[2] = {items.size(), 3};
-  const std::int64_t strides[2] = {sizeof(Item) / sizeof(double), 1};
-  return Array(data, 2, shape, owner, strides);
-}
-
-/// (n, size) view of a small array member.
-template <typename Item, typename Scalar, std::size_t size>
-auto Column(nanobind::handle owner, const std::vector<Item>& items,
-            std::array<Scalar, size> Item::* member) {
+            Member Item::* member) {
+  using Scalar = typename MemberNumbers<Member>::Scalar;
+  using Shape = typename MemberNumbers<Member>::Shape;
   static_assert(sizeof(Item) % sizeof(Scalar) == 0);
-  using Array = nanobind::ndarray<nanobind::numpy, const Scalar,
-                                  nanobind::shape<-1, size>>;
-  const Scalar* data = items.empty() ? nullptr : (items.front().*member).data();
-  const std::size_t shape[2] = {items.size(), size};
-  const std::int64_t strides[2] = {sizeof(Item) / sizeof(Scalar), 1};
-  return Array(data, 2, shape, owner, strides);
+  const void* const data = items.empty() ? nullptr : &(items.front().*member);
+  const std::size_t shape[] = {items.size(), sizeof(Member) / sizeof(Scalar)};
+  const std::int64_t strides[] = {sizeof(Item) / sizeof(Scalar), 1};
+  return nanobind::ndarray<nanobind::numpy, const Scalar, Shape>(
+      data, std::is_arithmetic_v<Member> ? 1 : 2, shape, owner, strides);
 }
 
 /// Defines `name` as a read-only column of the vector `items` of Class.
@@ -90,6 +75,15 @@ void DefFrozenCopy(Binding* binding) {
   binding->def("__deepcopy__",
                [](nanobind::object self, nanobind::handle) { return self; });
   binding->def("__copy__", [](nanobind::object self) { return self; });
+}
+
+/// Defines copies that are independent.
+template <typename Binding>
+void DefCopy(Binding* binding) {
+  using Class = typename Binding::Type;
+  binding->def("__deepcopy__",
+               [](const Class& self, nanobind::handle) { return Class(self); });
+  binding->def("__copy__", [](const Class& self) { return Class(self); });
 }
 
 }  // namespace drake_haptics

@@ -55,16 +55,9 @@ class SharedStepper {
   void SetObjectPose(nb::handle place, nb::handle X_WO_value,
                      const Vec6& V_WO) {
     const Pose X_WO = ToPose(X_WO_value, "X_WO");
-    const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
-    if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
-    const Py_ssize_t size = stepper_.num_objects();
-    if (i < 0 || i >= size) {
-      const auto text =
-          "no object " + std::to_string(i) + " of " + std::to_string(size);
-      throw nb::index_error(text.c_str());
-    }
+    const int i = ToObjectIndex(place, stepper_.num_objects());
     const Turn turn(&mutex_, Turn::Gil::kHold);
-    stepper_.SetObjectPose(static_cast<int>(i), X_WO, V_WO);
+    stepper_.SetObjectPose(i, X_WO, V_WO);
   }
 
   Result Step(const PoseVector& q_WT, const Vec6& V_WT, const PoseVector& q_WH,
@@ -131,7 +124,7 @@ class SharedStepper {
     }
     std::vector<double> numbers;
     for (Py_ssize_t i = 0; i < array.shape(0); ++i) {
-      numbers.push_back(RealArray::Load(array.data() + i * array.stride(0)));
+      numbers.push_back(array[i]);
     }
     return numbers;
   }
@@ -180,11 +173,7 @@ void BindResult(nb::module_& m) {
           nb::sig("def friction(self) -> FrictionStep"),
           "`FrictionStep` of `contacts`, which take the place of clusters.")
       .def_prop_ro(
-          "F_Oo_W",
-          [](const Result& r) {
-            return ToRows<double, 6>(r.F_Oo_W,
-                                     [](const Vec6& F, int k) { return F[k]; });
-          },
+          "F_Oo_W", [](const Result& r) { return ToRows(r.F_Oo_W); },
           "(num_objects, 6) [torque; force] of contact on each object at the "
           "origin of its frame, in W, friction included.")
       .def_prop_ro(
@@ -358,18 +347,13 @@ void BindConstraintStep(nb::module_& m) {
            "    ValueError: a value is not finite, or numbers of objects or of "
            "variables differ.")
       .def("reset", &SharedStepper::Reset,
-           "Forgets what earlier ticks found; the objects stay.")
-      .def("__deepcopy__", [](const SharedStepper& self,
-                              nb::handle) { return SharedStepper(self); })
-      .def("__copy__",
-           [](const SharedStepper& self) { return SharedStepper(self); })
-      .def("__repr__", [](const SharedStepper& self) {
-        return nb::str("ConstraintStepper({}, period {} s)")
-            .format(Counted(static_cast<std::size_t>(
-                                self.constants().num_objects()),
-                            "object"),
-                    self.constants().settings().period);
-      });
+           "Forgets what earlier ticks found; the objects stay.");
+  DefCopy(&stepper);
+  stepper.def("__repr__", [](const SharedStepper& self) {
+    return nb::str("ConstraintStepper({}, period {} s)")
+        .format(Counted(self.constants().num_objects(), "object"),
+                self.constants().settings().period);
+  });
 }
 
 }  // namespace drake_haptics

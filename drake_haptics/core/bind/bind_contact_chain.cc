@@ -28,10 +28,7 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using StateVector = Eigen::Matrix<double, 13, 1>;
 using Models = std::vector<WrenchModelVector>;
-using Numbers =
-    nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 // A tracker that also returns forces. Each call goes on from the results of the
 // last one.
@@ -65,9 +62,9 @@ class TrackedChain : public SceneTracker {
                                &tracker_);
   }
 
-  StateVector StepTool(const JoinedVector<double>& joined,
-                       const ToolInertia& inertia, double h,
-                       const Models& others) {
+  ToolStateVector StepTool(const JoinedVector<double>& joined,
+                           const ToolInertia& inertia, double h,
+                           const Models& others) {
     // The sum is in the order of `RigidToolDynamics.step` of [coupling,
     // contact, others].
     WrenchModel sum;
@@ -75,10 +72,7 @@ class TrackedChain : public SceneTracker {
     const ToolState state = StateOf(joined);
     sum += FindWrench(state);
     for (const WrenchModelVector& other : others) sum += ToWrenchModel(other);
-    const ToolState next = drake_haptics::StepTool(inertia, state, sum, h);
-    StateVector out;
-    out << next.q_WT, next.V_WT;
-    return out;
+    return ToVector(drake_haptics::StepTool(inertia, state, sum, h));
   }
 
   Vec6 FindForce(const PoseVector& q_WT, const Vec6& V_WT) {
@@ -91,8 +85,8 @@ class TrackedChain : public SceneTracker {
   }
 
   FrictionStep FindFriction(const StickSlipModel& friction,
-                            const Numbers& state, const PoseVector& q_WT,
-                            const Vec6& V_WT) {
+                            const NumbersArg<double>& state,
+                            const PoseVector& q_WT, const Vec6& V_WT) {
     const Turn turn(&mutex_, Turn::Gil::kHold);
     if (friction.num_moving() > 0 ||
         friction.num_objects() != chain_.num_objects()) {
@@ -124,10 +118,10 @@ class TrackedChain : public SceneTracker {
   // Returns the numbers of contacts and clusters, the least distance (m) and
   // the time of the query (s).
   std::tuple<std::size_t, int, double, double> Summarize(
-      const StateVector& state) {
+      const ToolStateVector& state) {
     const Turn turn(&mutex_, Turn::Gil::kHold);
     Refresh();
-    chain_.FindWrench({state.head<7>(), state.tail<6>()}, &tracker_);
+    chain_.FindWrench(ToToolState(state), &tracker_);
     const ContactSet& found = chain_.contacts();
     return {found.contacts.size(), chain_.num_clusters(),
             chain_.least_distance(), found.query_seconds};
@@ -141,14 +135,9 @@ class TrackedChain : public SceneTracker {
     for (const WrenchModelVector& other : others) {
       contact += ToWrenchModel(other);
     }
-    const HandleSlopes slopes =
+    return ToVector(
         ComputeHandleSlopes(state.q_WT.tail<3>() - joined.segment<3>(4),
-                            ComputeJoinedCoupling(joined).tool, contact);
-    Eigen::Matrix<double, 72, 1> out;
-    using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-    Eigen::Map<Rows>(out.data()) = slopes.K;
-    Eigen::Map<Rows>(out.data() + 36) = slopes.B;
-    return out;
+                            ComputeJoinedCoupling(joined).tool, contact));
   }
 
  private:
@@ -181,12 +170,13 @@ class TrackedChain : public SceneTracker {
 }  // namespace
 
 void BindContactChain(nb::module_& m) {
-  nb::class_<TrackedChain, SceneTracker>(
+  nb::class_<TrackedChain, SceneTracker> chain(
       m, "ContactChain",
       "A `SceneTracker` that also computes the motion of a tool on a coupling "
       "under its contacts: query, clusters, penalty force, coupling and the "
       "tool's step in one call. It keeps its last results, so that another "
-      "query of the same pose costs nothing.")
+      "query of the same pose costs nothing.");
+  chain
       .def(nb::init<const SceneTracker&>(), nb::arg("tracker"),
            "Goes on from the state of a tracker, which stays as it is.")
       .def("set_law", &TrackedChain::SetLaw, nb::arg("tolerance"),
@@ -252,11 +242,8 @@ void BindContactChain(nb::module_& m) {
       .def("handle_slopes", &TrackedChain::FindHandleSlopes, nb::arg("joined"),
            nb::arg("others"),
            "`handle_slopes` (72,) of the coupling and of the contacts plus "
-           "other wrench models, for the arguments of `step_tool`.")
-      .def("__deepcopy__", [](const TrackedChain& self,
-                              nb::handle) { return TrackedChain(self); })
-      .def("__copy__",
-           [](const TrackedChain& self) { return TrackedChain(self); });
+           "other wrench models, for the arguments of `step_tool`.");
+  DefCopy(&chain);
 }
 
 }  // namespace drake_haptics

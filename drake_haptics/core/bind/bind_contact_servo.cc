@@ -14,18 +14,6 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using StateVector = Eigen::Matrix<double, 13, 1>;
-
-ToolState ToToolState(const StateVector& state) {
-  return {state.head<7>(), state.tail<6>()};
-}
-
-StateVector ToVector(const ToolState& state) {
-  StateVector out;
-  out << state.q_WT, state.V_WT;
-  return out;
-}
-
 class PythonContactServo : public ContactServo {
  public:
   using ContactServo::ContactServo;
@@ -46,7 +34,7 @@ void BindServoTool(nb::module_& m) {
       .def(
           "__init__",
           [](ServoTool* self, nb::handle stepper, const PoseVector& q_WB,
-             const StateVector& start) {
+             const ToolStateVector& start) {
             new (self)
                 ServoTool(CopyStepper(stepper), q_WB, ToToolState(start));
           },
@@ -64,7 +52,7 @@ void BindServoTool(nb::module_& m) {
       .def_prop_ro("period_s", &ServoTool::period, "Duration of a period, s.")
       .def_prop_rw(
           "state", [](const ServoTool& self) { return ToVector(self.state()); },
-          [](ServoTool& self, const StateVector& state) {
+          [](ServoTool& self, const ToolStateVector& state) {
             self.SetState(ToToolState(state));
           },
           "(13,) pose and velocity of the tool in the world.")
@@ -119,19 +107,14 @@ void BindThread(nb::module_& m) {
       "device's newest handle state, and publishes the local wrench to it, "
       "which nothing else may do then. It runs without Python; only `close` "
       "waits for it. Only one thread of the program may use it.")
-      .def(
-          "__init__",
-          [](PythonContactServo* self, PythonUdpServo* servo,
-             const ServoTool& tool) {
-            new (self) PythonContactServo(servo, tool);
-          },
-          nb::arg("servo"), nb::arg("tool"), nb::keep_alive<1, 2>(),
-          nb::sig("def __init__(self, servo: UdpServo, tool: ServoTool) -> "
-                  "None"),
-          "Starts the thread, which waits for the first `renew`.\n\n"
-          "Args:\n"
-          "    servo: Servo that answers the device.\n"
-          "    tool: Tool, which is copied.")
+      .def(nb::init<PythonUdpServo*, const ServoTool&>(), nb::arg("servo"),
+           nb::arg("tool"), nb::keep_alive<1, 2>(),
+           nb::sig("def __init__(self, servo: UdpServo, tool: ServoTool) -> "
+                   "None"),
+           "Starts the thread, which waits for the first `renew`.\n\n"
+           "Args:\n"
+           "    servo: Servo that answers the device.\n"
+           "    tool: Tool, which is copied.")
       .def("renew", &PythonContactServo::Renew, nb::arg("gains"),
            nb::arg("F_applied_To_W"),
            "Says that the loop goes on, and sets the coupling and the sum (6,) "

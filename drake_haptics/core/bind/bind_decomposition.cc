@@ -20,9 +20,6 @@ namespace {
 using DecompositionPtr = std::shared_ptr<Decomposition>;
 using TrianglesArg = nb::ndarray<const std::int32_t, nb::shape<-1, 3>,
                                  nb::c_contig, nb::device::cpu>;
-template <typename T>
-using PerTriangleArg =
-    nb::ndarray<const T, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 std::vector<Triangle> ToTriangles(const TrianglesArg& array) {
   std::vector<Triangle> triangles(array.shape(0));
@@ -33,7 +30,7 @@ std::vector<Triangle> ToTriangles(const TrianglesArg& array) {
 }
 
 template <typename T>
-std::vector<T> ToVector(const PerTriangleArg<T>& array) {
+std::vector<T> ToVector(const NumbersArg<T>& array) {
   return {array.data(), array.data() + array.shape(0)};
 }
 
@@ -48,7 +45,7 @@ Progress ToProgress(
 
 DecompositionPtr Decompose(
     const PointsArg& vertices, const TrianglesArg& triangles,
-    const PerTriangleArg<std::uint8_t>& solid,
+    const NumbersArg<std::uint8_t>& solid,
     std::optional<std::function<bool(double)>> progress) {
   const std::vector<Vec3> points = ToPoints(vertices);
   const std::vector<Triangle> faces = ToTriangles(triangles);
@@ -60,8 +57,8 @@ DecompositionPtr Decompose(
 }
 
 MergedPieces Merge(const PointsArg& vertices, const TrianglesArg& triangles,
-                   const PerTriangleArg<std::uint8_t>& solid,
-                   const PerTriangleArg<std::int32_t>& labels, double error,
+                   const NumbersArg<std::uint8_t>& solid,
+                   const NumbersArg<std::int32_t>& labels, double error,
                    std::optional<std::function<bool(double)>> progress) {
   const std::vector<Vec3> points = ToPoints(vertices);
   const std::vector<Triangle> faces = ToTriangles(triangles);
@@ -74,9 +71,9 @@ MergedPieces Merge(const PointsArg& vertices, const TrianglesArg& triangles,
 
 DecompositionPtr AssembleMerged(const PointsArg& vertices,
                                 const TrianglesArg& triangles,
-                                const PerTriangleArg<std::uint8_t>& solid,
-                                const PerTriangleArg<std::int32_t>& labels,
-                                const PerTriangleArg<std::int32_t>& groups,
+                                const NumbersArg<std::uint8_t>& solid,
+                                const NumbersArg<std::int32_t>& labels,
+                                const NumbersArg<std::int32_t>& groups,
                                 double error) {
   const std::vector<Vec3> points = ToPoints(vertices);
   const std::vector<Triangle> faces = ToTriangles(triangles);
@@ -90,7 +87,7 @@ DecompositionPtr AssembleMerged(const PointsArg& vertices,
 
 DecompositionPtr Assemble(const PointsArg& vertices,
                           const TrianglesArg& triangles,
-                          const PerTriangleArg<std::int32_t>& labels) {
+                          const NumbersArg<std::int32_t>& labels) {
   const std::vector<Vec3> points = ToPoints(vertices);
   const std::vector<Triangle> faces = ToTriangles(triangles);
   const std::vector<std::int32_t> pieces = ToVector(labels);
@@ -139,7 +136,7 @@ void BindDecomposition(nb::module_& m) {
       "A mesh and the convex pieces that stand for its surface. Immutable.")
       .def_prop_ro(
           "vertices",
-          [](const Decomposition& self) { return ToArray3(self.vertices); },
+          [](const Decomposition& self) { return ToRows(self.vertices); },
           "(n, 3) vertices of the mesh, m, in the object's frame.")
       .def_prop_ro(
           "triangles",

@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -23,16 +24,14 @@ void ReadReals(nanobind::handle value, const char* name, double (&out)[size]) {
                                 std::to_string(size) + ",); got shape " +
                                 array.shape_text());
   }
-  for (std::size_t i = 0; i < size; ++i) {
-    out[i] = RealArray::Load(array.data() +
-                             static_cast<Py_ssize_t>(i) * array.stride(0));
-  }
+  for (std::size_t i = 0; i < size; ++i) out[i] = array[i];
 }
 
 /// @throws std::invalid_argument unless low <= value <= high.
 template <typename Out>
-Out ReadCount(const char* name, nanobind::int_ value, std::uint64_t low,
-              std::uint64_t high) {
+void ReadCount(const char* name, nanobind::int_ value, Out* out,
+               std::uint64_t low = 0,
+               std::uint64_t high = std::numeric_limits<Out>::max()) {
   std::uint64_t count = 0;
   const bool fits =
       nanobind::try_cast(value, count) && count >= low && count <= high;
@@ -42,7 +41,7 @@ Out ReadCount(const char* name, nanobind::int_ value, std::uint64_t low,
         std::to_string(high) + ", got " +
         nanobind::cast<std::string>(nanobind::str(value)));
   }
-  return static_cast<Out>(count);
+  *out = static_cast<Out>(count);
 }
 
 template <std::size_t size>

@@ -17,8 +17,6 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using ToolStateVector = Eigen::Matrix<double, 13, 1>;
-
 // The ledger of a loop whose sources have names.
 struct NamedLedger {
   EnergyLedger ledger;
@@ -110,7 +108,7 @@ void BindLedger(nb::module_& m) {
               throw std::invalid_argument(
                   "wrench_models and stored_J must have one value per source");
             }
-            LoopReading reading{{tool_state.head<7>(), tool_state.tail<6>()},
+            LoopReading reading{ToToolState(tool_state),
                                 q_WH,
                                 F_Ho_W_rendered,
                                 ToWrenchModel(coupling),

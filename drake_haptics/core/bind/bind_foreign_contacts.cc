@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
+#include "bind/bind_array.h"
 #include "pair/contact.h"
 
 namespace nb = nanobind;
@@ -10,7 +10,7 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Rows3 = Rows<double, 3>;
 
 // Largest difference from 1 of the length of another library's normal.
 constexpr double kUnitSlack = 1e-6;

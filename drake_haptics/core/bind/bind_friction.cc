@@ -17,8 +17,7 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using Numbers =
-    nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Numbers = NumbersArg<double>;
 
 template <typename T>
 void RequireSize(std::span<const T> numbers, int size, const char* name) {
@@ -106,7 +105,7 @@ void BindFrictionStep(nb::module_& m) {
       "(36, by rows); B (36, by rows)], rotational first; B is zero.");
   step.def_prop_ro(
       "f_cluster_W",
-      [](const FrictionStep& s) { return ToArray3(s.f_cluster_W); },
+      [](const FrictionStep& s) { return ToRows(s.f_cluster_W); },
       "(k, 3) force of each cluster on the tool, at its point, N.");
   step.def_prop_ro(
       "sliding",
@@ -124,13 +123,6 @@ void BindFrictionStep(nb::module_& m) {
   DefFrozenCopy(&step);
 }
 
-// The entries of vectors, one vector after another.
-Eigen::Map<const VectorOf<AutoDiff>> Flat(
-    const std::vector<Vec3Of<AutoDiff>>& vectors) {
-  return {vectors.empty() ? nullptr : vectors.front().data(),
-          3 * std::ssize(vectors)};
-}
-
 void BindAutoDiffStep(nb::module_& m) {
   using Step = AutoDiffFrictionStep;
   nb::class_<Step> step(
@@ -145,9 +137,7 @@ void BindAutoDiffStep(nb::module_& m) {
       "(78,) wrench on the tool at To with its linear model.");
   step.def_prop_ro(
       "f_cluster_W",
-      [](const Step& s) {
-        return ToAutoDiffVector(Flat(s.set.f_cluster_W), s.num_derivatives);
-      },
+      [](const Step& s) { return Flat(s.set.f_cluster_W, s.num_derivatives); },
       "(3 k,) force of each cluster on the tool, N.");
   step.def_prop_ro(
       "stored_J",

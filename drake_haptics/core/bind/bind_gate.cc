@@ -31,7 +31,9 @@ dh_gate MakeGate(const dh_gate_limits& limits) {
 }
 
 std::uint64_t ReadTime(nb::int_ now_ns) {
-  return ReadCount<std::uint64_t>("now_ns", now_ns, 0, UINT64_MAX);
+  std::uint64_t time = 0;
+  ReadCount("now_ns", now_ns, &time);
+  return time;
 }
 
 Eigen::Matrix<double, 6, 1> StepGate(dh_gate* gate, nb::int_ now_ns,

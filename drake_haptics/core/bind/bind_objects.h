@@ -1,16 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
+#include "bind/bind_array.h"
 #include "law/penalty_force.h"
 
 /// Frames and materials of all objects of a scene, in the core's own form:
 /// there can be a thousand, and in most ticks none of them moves or changes.
 namespace drake_haptics {
 
-using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using Rows6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+using Rows3 = Rows<double, 3>;
+using Rows6 = Rows<double, 6>;
 
 /// Origin and spatial velocity of each object.
 struct ObjectFrames {

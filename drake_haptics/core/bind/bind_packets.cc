@@ -11,29 +11,26 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-constexpr std::uint64_t kMax32 = UINT32_MAX, kMax64 = UINT64_MAX;
-
 nb::bytes PackState(nb::int_ sequence, nb::int_ time_ns, nb::handle X_BH,
                     nb::handle V_BH, nb::handle F_Ho_B, nb::int_ boot,
                     nb::int_ session, nb::int_ command_sequence,
                     nb::int_ buttons, nb::int_ rejected, double max_force_N,
                     double max_torque_Nm, nb::int_ gate, nb::int_ fault) {
   dh_state state{};
-  state.session = ReadCount<std::uint32_t>("session", session, 0, kMax32);
-  state.sequence = ReadCount<std::uint32_t>("sequence", sequence, 0, kMax32);
-  state.time_ns = ReadCount<std::uint64_t>("time_ns", time_ns, 0, kMax64);
+  ReadCount("session", session, &state.session);
+  ReadCount("sequence", sequence, &state.sequence);
+  ReadCount("time_ns", time_ns, &state.time_ns);
   ReadReals(X_BH, "X_BH", state.X_BH);
   ReadReals(V_BH, "V_BH", state.V_BH);
   ReadReals(F_Ho_B, "F_Ho_B", state.F_Ho_B);
-  state.boot = ReadCount<std::uint32_t>("boot", boot, 1, kMax32);
-  state.command_sequence =
-      ReadCount<std::uint32_t>("command_sequence", command_sequence, 0, kMax32);
-  state.buttons = ReadCount<std::uint32_t>("buttons", buttons, 0, kMax32);
-  state.rejected = ReadCount<std::uint32_t>("rejected", rejected, 0, kMax32);
+  ReadCount("boot", boot, &state.boot, 1);
+  ReadCount("command_sequence", command_sequence, &state.command_sequence);
+  ReadCount("buttons", buttons, &state.buttons);
+  ReadCount("rejected", rejected, &state.rejected);
   state.max_force_N = static_cast<float>(max_force_N);
   state.max_torque_Nm = static_cast<float>(max_torque_Nm);
-  state.gate = ReadCount<std::uint8_t>("gate", gate, 0, DH_FAULT);
-  state.fault = ReadCount<std::uint8_t>("fault", fault, 0, DH_FAULT_DEVICE);
+  ReadCount("gate", gate, &state.gate, 0, DH_FAULT);
+  ReadCount("fault", fault, &state.fault, 0, DH_FAULT_DEVICE);
   std::array<std::uint8_t, DH_STATE_SIZE> bytes;
   dh_pack_state(&state, bytes.data());
   return nb::bytes(bytes.data(), bytes.size());
@@ -43,13 +40,12 @@ nb::bytes PackCommand(nb::int_ session, nb::int_ sequence, nb::int_ time_ns,
                       nb::handle F_Ho_B, nb::int_ state_sequence,
                       nb::int_ ttl_us, bool enable) {
   dh_command command{};
-  command.session = ReadCount<std::uint32_t>("session", session, 1, kMax32);
-  command.sequence = ReadCount<std::uint32_t>("sequence", sequence, 0, kMax32);
-  command.time_ns = ReadCount<std::uint64_t>("time_ns", time_ns, 0, kMax64);
+  ReadCount("session", session, &command.session, 1);
+  ReadCount("sequence", sequence, &command.sequence);
+  ReadCount("time_ns", time_ns, &command.time_ns);
   ReadReals(F_Ho_B, "F_Ho_B", command.F_Ho_B);
-  command.state_sequence =
-      ReadCount<std::uint32_t>("state_sequence", state_sequence, 0, kMax32);
-  command.ttl_us = ReadCount<std::uint32_t>("ttl_us", ttl_us, 0, kMax32);
+  ReadCount("state_sequence", state_sequence, &command.state_sequence);
+  ReadCount("ttl_us", ttl_us, &command.ttl_us);
   command.enable = enable;
   std::array<std::uint8_t, DH_COMMAND_SIZE> bytes;
   dh_pack_command(&command, bytes.data());

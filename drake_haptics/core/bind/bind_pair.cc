@@ -141,7 +141,7 @@ bool IsGlobalDepth(nb::handle depth) {
 
 void BindConvexPair(nb::module_& m) {
   BindPairTrajectory(m);
-  nb::class_<ConvexPair>(
+  nb::class_<ConvexPair> pair(
       m, "ConvexPair",
       "Signed distance of two convex polytopes A and B, each query starting "
       "from the last one's answer. Apart it is the distance of the closest "
@@ -151,8 +151,8 @@ void BindConvexPair(nb::module_& m) {
       "exact and proven.\n\n"
       "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
       "[qw qx qy qz x y z]; lengths in m. A ValueError leaves the pair as it "
-      "was. Threads that share a pair take turns.")
-      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
+      "was. Threads that share a pair take turns.");
+  pair.def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
            nb::arg("B").none(), nb::arg("depth").none() = "tracked",
            nb::sig("def __init__(self, A: ConvexPolytope, B: ConvexPolytope, "
                    "depth: typing.Literal['tracked', 'global'] = 'tracked') -> "
@@ -183,14 +183,12 @@ void BindConvexPair(nb::module_& m) {
           "Raises:\n"
           "    ValueError: a pose is not finite or not rigid, or numbers of "
           "poses differ; then no query is made.")
-      .def("reset", &ConvexPair::Reset, "Forgets what earlier queries found.")
-      .def("__deepcopy__",
-           [](const ConvexPair& self, nb::handle) { return ConvexPair(self); })
-      .def("__copy__", [](const ConvexPair& self) { return ConvexPair(self); })
-      .def("__repr__", [](const ConvexPair& self) {
-        return nb::str("ConvexPair({}, {}, depth='{}')")
-            .format(nb::cast(self.A()), nb::cast(self.B()), self.depth());
-      });
+      .def("reset", &ConvexPair::Reset, "Forgets what earlier queries found.");
+  DefCopy(&pair);
+  pair.def("__repr__", [](const ConvexPair& self) {
+    return nb::str("ConvexPair({}, {}, depth='{}')")
+        .format(nb::cast(self.A()), nb::cast(self.B()), self.depth());
+  });
 }
 
 }  // namespace drake_haptics

@@ -37,15 +37,6 @@ ContactMaterials::ContactMaterials(const Eigen::VectorXd& stiffness,
 
 namespace {
 
-template <typename Rows, typename Item>
-Rows ToRowMatrix(const std::vector<Item>& items) {
-  Rows rows(items.size(), Rows::ColsAtCompileTime);
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    rows.row(i) = items[i].transpose();
-  }
-  return rows;
-}
-
 ObjectFrames Moved(ObjectFrames self, const std::vector<int>& index,
                    const std::vector<PoseVector>& X_WO,
                    const std::vector<Vec6>& V_WO) {
@@ -81,11 +72,9 @@ void BindObjects(nb::module_& m) {
       .def_prop_ro(
           "V_WO",
           [](const ObjectFrames& o) {
-            Rows6 rows(o.frames.size(), 6);
-            for (std::size_t i = 0; i < o.frames.size(); ++i) {
-              rows.row(i) = o.frames[i].V_WF.transpose();
-            }
-            return rows;
+            return ToRows<double, 6>(o.frames, [](const MovingFrame& f, int k) {
+              return f.V_WF[k];
+            });
           },
           "(m, 6) spatial velocities [rad/s; m/s].")
       .def("moved", &Moved, nb::arg("index"), nb::arg("X_WO"), nb::arg("V_WO"),
@@ -133,13 +122,11 @@ void BindWrench(nb::module_& m) {
       "(6,) wrench on the tool at To, [N·m; N].");
   wrench.def_prop_ro(
       "F_objects_W",
-      [](const PenaltyWrench& w) {
-        return ToRowMatrix<Rows6>(w.SumByObject());
-      },
+      [](const PenaltyWrench& w) { return ToRows(w.SumByObject()); },
       "(m, 6) wrench on each object at its origin, [N·m; N].");
   wrench.def_prop_ro(
       "f_cluster_W",
-      [](const PenaltyWrench& w) { return ToRowMatrix<Rows3>(w.f_cluster_W); },
+      [](const PenaltyWrench& w) { return ToRows(w.f_cluster_W); },
       "(k, 3) force of each cluster on the tool, N.");
   DefFrozenCopy(&wrench);
 }

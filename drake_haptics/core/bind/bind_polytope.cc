@@ -73,7 +73,7 @@ nb::tuple Reduce(nb::handle self) {
         "a piece of a decomposition cannot be pickled by itself; pickle or "
         "save the Decomposition");
   }
-  return nb::make_tuple(self.type(), nb::make_tuple(ToArray3(P.vertices)));
+  return nb::make_tuple(self.type(), nb::make_tuple(ToRows(P.vertices)));
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ void BindPolytope(nb::module_& m) {
       .def_ro("dimension", &Polytope::dimension,
               "0 point, 1 segment, 2 flat polygon, 3 solid.")
       .def_prop_ro(
-          "vertices", [](const Polytope& P) { return ToArray3(P.vertices); },
+          "vertices", [](const Polytope& P) { return ToRows(P.vertices); },
           "(n, 3) extreme points, m, in the order of the input.")
       .def_prop_ro("facets", &FacetLoops,
                    "Vertex loops, counter-clockwise seen from outside.")
@@ -166,7 +166,7 @@ void BindPolytope(nb::module_& m) {
               throw nb::index_error("no such vertex");
             }
             const auto ring = P.ring_of(vertex);
-            return ToArray3(std::vector<Vec3>(ring.begin(), ring.end()));
+            return ToRows(std::vector<Vec3>(ring.begin(), ring.end()));
           },
           nb::arg("vertex"),
           "(r, 3) unit directions of the surface's edges at a vertex.")

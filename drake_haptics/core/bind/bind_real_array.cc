@@ -72,6 +72,17 @@ double ToReal(nb::handle value, const char* name) {
   return real;
 }
 
+int ToObjectIndex(nb::handle value, int size) {
+  const Py_ssize_t i = PyNumber_AsSsize_t(value.ptr(), PyExc_IndexError);
+  if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
+  if (i < 0 || i >= size) {
+    const auto text =
+        "no object " + std::to_string(i) + " of " + std::to_string(size);
+    throw nb::index_error(text.c_str());
+  }
+  return static_cast<int>(i);
+}
+
 std::string TypeName(nb::handle value) {
   // For an array, the type of its numbers says more than its class.
   if (nb::hasattr(value, "dtype")) {

@@ -25,6 +25,8 @@ class RealArray {
   /// Bytes from one item of the axis to the next.
   Py_ssize_t stride(int axis) const { return view_.strides[axis]; }
   const char* data() const { return static_cast<const char*>(view_.buf); }
+  /// An item of an array with one axis.
+  double operator[](Py_ssize_t i) const { return Load(data() + i * stride(0)); }
   /// An item of an array with two axes.
   double operator()(Py_ssize_t i, Py_ssize_t j) const {
     return Load(data() + i * stride(0) + j * stride(1));
@@ -44,6 +46,11 @@ class RealArray {
 
 /// A real number. @throws std::invalid_argument if it is not a number.
 double ToReal(nanobind::handle value, const char* name);
+
+/// The index of an object, of which there are `size`. Accepts what lists do, so
+/// that NumPy's integers are accepted.
+/// @throws nanobind::index_error if there is no such object.
+int ToObjectIndex(nanobind::handle value, int size);
 
 /// The class of a value, for messages.
 std::string TypeName(nanobind::handle value);

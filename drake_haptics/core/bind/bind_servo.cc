@@ -244,14 +244,9 @@ void BindServo(nb::module_& m) {
       "handle_slopes",
       [](const PoseVector& q_WH, const PoseVector& q_WT,
          const WrenchModelVector& coupling, const WrenchModelVector& contact) {
-        const HandleSlopes slopes = ComputeHandleSlopes(
-            q_WT.tail<3>() - q_WH.tail<3>(), ToWrenchModel(coupling),
-            ToWrenchModel(contact));
-        Eigen::Matrix<double, 72, 1> out;
-        using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-        Eigen::Map<Rows>(out.data()) = slopes.K;
-        Eigen::Map<Rows>(out.data() + 36) = slopes.B;
-        return out;
+        return ToVector(ComputeHandleSlopes(q_WT.tail<3>() - q_WH.tail<3>(),
+                                            ToWrenchModel(coupling),
+                                            ToWrenchModel(contact)));
       },
       nb::arg("q_WH"), nb::arg("q_WT"), nb::arg("coupling_model"),
       nb::arg("contact_model"),

@@ -31,15 +31,12 @@ Eigen::Matrix<T, kWrenchModelSize + 6, 1> ToVector(
 }
 
 template <typename T>
-Eigen::Matrix<T, 13, 1> Step(
-    const ToolInertia& inertia, const Eigen::Matrix<T, 13, 1>& state,
-    const Eigen::Matrix<T, kWrenchModelSize, 1>& wrench, double h) {
-  const ToolStateOf<T> next =
-      StepTool<T>(inertia, {state.template head<7>(), state.template tail<6>()},
-                  ToWrenchModel(wrench), h);
-  Eigen::Matrix<T, 13, 1> out;
-  out << next.q_WT, next.V_WT;
-  return out;
+ToolStateVectorOf<T> Step(const ToolInertia& inertia,
+                          const Eigen::Matrix<T, 13, 1>& state,
+                          const Eigen::Matrix<T, kWrenchModelSize, 1>& wrench,
+                          double h) {
+  return drake_haptics::ToVector(
+      StepTool(inertia, ToToolState(state), ToWrenchModel(wrench), h));
 }
 
 void RequireLimit(double limit, const char* name) {

@@ -38,12 +38,12 @@ ContactTracker PosedTracker(DecompositionPtr tool,
 
 // Runs one tick after the other, and times each.
 Run RunToolLoop(ToolLoop* loop, double tolerance, const States& handle,
-                const Eigen::Matrix<double, 13, 1>& start) {
+                const ToolStateVector& start) {
   const Eigen::Index n = handle.rows();
   Run run{States(n, 13), Eigen::VectorXi(n), Eigen::VectorXd(n),
           Eigen::VectorXd(n)};
   auto& [states, num_contacts, nearest, seconds] = run;
-  ToolState state{start.head<7>(), start.tail<6>()};
+  ToolState state = ToToolState(start);
   RunTrajectory(static_cast<std::size_t>(n), [&](std::size_t i) {
     const auto k = static_cast<Eigen::Index>(i);
     const PoseVector q_WH = handle.row(k).head<7>();
@@ -51,7 +51,7 @@ Run RunToolLoop(ToolLoop* loop, double tolerance, const States& handle,
     const Clock::time_point begin = Clock::now();
     loop->Step(q_WH, V_WH, &state);
     seconds[k] = SecondsSince(begin);
-    states.row(k) << state.q_WT.transpose(), state.V_WT.transpose();
+    states.row(k) = ToVector(state).transpose();
     const std::vector<Contact>& contacts = loop->contacts().contacts;
     num_contacts[k] = static_cast<int>(contacts.size());
     nearest[k] = tolerance;
@@ -71,7 +71,7 @@ void BindToolLoop(nb::module_& m) {
          const Poses& q_WO, double tolerance, const ToolInertia& dynamics,
          const CouplingGains& gains, const PoseVector& q_HT, double stiffness,
          double damping, double h, const States& handle,
-         const Eigen::Matrix<double, 13, 1>& start) {
+         const ToolStateVector& start) {
         ToolLoop loop(
             PosedTracker(std::move(tool), objects, q_WO, tolerance),
             {dynamics, gains, q_HT,

@@ -124,18 +124,10 @@ SceneTracker::SceneTracker(nb::handle tool, nb::handle objects,
 
 void SceneTracker::SetObjectPose(nb::handle place, nb::handle X_WO_value) {
   const Pose X_WO = ToPose(X_WO_value, "X_WO");
-  // Through `__index__`, as lists do, so that NumPy's integers are accepted.
-  const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
-  if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
-  const Py_ssize_t size = tracker_.num_objects();
-  if (i < 0 || i >= size) {
-    const auto text =
-        "no object " + std::to_string(i) + " of " + std::to_string(size);
-    throw nb::index_error(text.c_str());
-  }
+  const int i = ToObjectIndex(place, tracker_.num_objects());
   const Turn turn(&mutex_, Turn::Gil::kHold);
   ++changes_;
-  tracker_.SetObjectPose(static_cast<int>(i), X_WO);
+  tracker_.SetObjectPose(i, X_WO);
 }
 
 ContactSet SceneTracker::Query(nb::handle X_WT_value,
@@ -216,10 +208,8 @@ void DefTracker(nb::class_<Tracker>* tracker) {
             return self.constants().depth().max_walk_steps;
           },
           "Bound on the steps of a walk from feature to feature.")
-      .def("reset", &Tracker::Reset, "Forgets what earlier queries found.")
-      .def("__deepcopy__",
-           [](const Tracker& self, nb::handle) { return Tracker(self); })
-      .def("__copy__", [](const Tracker& self) { return Tracker(self); });
+      .def("reset", &Tracker::Reset, "Forgets what earlier queries found.");
+  DefCopy(tracker);
 }
 
 void BindContactTracker(nb::module_& m) {

@@ -55,4 +55,11 @@ HandleSlopes ComputeHandleSlopes(const Vec3& p_HoTo_W,
           at_handle.transpose() * B * at_handle};
 }
 
+Eigen::Matrix<double, 72, 1> ToVector(const HandleSlopes& slopes) {
+  Eigen::Matrix<double, 72, 1> vector;
+  vector << slopes.K.reshaped<Eigen::RowMajor>(),
+      slopes.B.reshaped<Eigen::RowMajor>();
+  return vector;
+}
+
 }  // namespace drake_haptics

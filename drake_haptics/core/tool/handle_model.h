@@ -11,6 +11,9 @@ struct HandleSlopes {
   Mat6 B = Mat6::Zero();  ///< damping
 };
 
+/// K, then B, by rows.
+Eigen::Matrix<double, 72, 1> ToVector(const HandleSlopes& slopes);
+
 /// Returns the slopes of the wrench on a handle that holds a tool by a
 /// coupling, with the tool in equilibrium between coupling and contact: springs
 /// in series. With the coupling's Kc and the contact's Kt on the tool, the tool

@@ -22,6 +22,22 @@ struct ToolStateOf {
 };
 using ToolState = ToolStateOf<double>;
 
+/// The state as a vector [q_WT; V_WT].
+template <typename T>
+using ToolStateVectorOf = Eigen::Matrix<T, 13, 1>;
+using ToolStateVector = ToolStateVectorOf<double>;
+
+template <typename T>
+ToolStateVectorOf<T> ToVector(const ToolStateOf<T>& state) {
+  ToolStateVectorOf<T> vector;
+  vector << state.q_WT, state.V_WT;
+  return vector;
+}
+template <typename T>
+ToolStateOf<T> ToToolState(const Eigen::Matrix<T, 13, 1>& vector) {
+  return {vector.template head<7>(), vector.template tail<6>()};
+}
+
 /// @throws std::invalid_argument unless the mass is above zero and the inertia
 ///         is symmetric and positive definite.
 void RequirePhysical(const ToolInertia& inertia);
