@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "convex/hull_shape.h"
 #include "mesh/convex_clip.h"
