@@ -27,10 +27,13 @@ constexpr double kBulge = 2 * kSurfaceSlack;
 // all directions between those in it.
 constexpr double kWidest = 0.1;
 
+bool FallsAway(const Vec3& n, const Vec3& r) {
+  return n.dot(r) <= kSurfaceSlack + kLoose;
+}
+
 bool IsInNormalCone(const Vec3& n, std::span<const Vec3> ring) {
-  return std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
-    return n.dot(r) <= kSurfaceSlack + kLoose;
-  });
+  return std::all_of(ring.begin(), ring.end(),
+                     [&](const Vec3& r) { return FallsAway(n, r); });
 }
 
 class Collection {
@@ -127,6 +130,17 @@ void FillEdgeNormalArcs(Polytope* piece) {
 
 std::vector<Vec3> FindRingCorners(std::span<const Vec3> ring) {
   std::vector<Vec3> corners;
+  // The edge that rose last is asked first, since it rises for most corners
+  // that do not hold: else the many edges at the hub of a disk would take the
+  // cube of their number.
+  std::vector<Vec3> asked(ring.begin(), ring.end());
+  const auto holds = [&](const Vec3& n) {
+    const auto rises = [&](const Vec3& r) { return !FallsAway(n, r); };
+    const auto found = std::find_if(asked.begin(), asked.end(), rises);
+    if (found == asked.end()) return true;
+    std::iter_swap(asked.begin(), found);
+    return false;
+  };
   for (std::size_t i = 0; i < ring.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const Vec3 between =
@@ -137,7 +151,7 @@ std::vector<Vec3> FindRingCorners(std::span<const Vec3> ring) {
       if (!(rest > 0) || !(across.squaredNorm() > 1e-20)) continue;
       const Vec3 aside = across.normalized() * std::sqrt(rest);
       for (const Vec3& n : {Vec3(between + aside), Vec3(between - aside)}) {
-        if (IsInNormalCone(n, ring)) corners.push_back(n);
+        if (holds(n)) corners.push_back(n);
       }
     }
   }

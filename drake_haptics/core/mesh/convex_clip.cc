@@ -29,13 +29,19 @@ std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
 }
 
 bool MeetsInterior(const std::array<Vec3, 3>& triangle,
-                   std::span<const Plane> planes, double inset) {
+                   std::span<const Plane> planes, double inset,
+                   std::size_t* likely) {
+  const auto is_beyond = [&](const Plane& plane) {
+    return std::all_of(triangle.begin(), triangle.end(), [&](const Vec3& p) {
+      return plane.Height(p) >= -inset;
+    });
+  };
   // Most triangles near the body are beyond one of its planes.
-  for (const Plane& plane : planes) {
-    if (std::all_of(triangle.begin(), triangle.end(),
-                    [&](const Vec3& p) { return plane.Height(p) >= -inset; })) {
-      return false;
-    }
+  if (*likely < planes.size() && is_beyond(planes[*likely])) return false;
+  const auto beyond = std::find_if(planes.begin(), planes.end(), is_beyond);
+  if (beyond != planes.end()) {
+    *likely = beyond - planes.begin();
+    return false;
   }
   return !ClipPolygon({triangle.begin(), triangle.end()}, planes, inset)
               .empty();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,10 @@ std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
 
 /// Whether a triangle meets the part of a convex body that is more than `inset`
 /// below all of its planes.
+/// @param[in,out] likely index of the plane that is asked first: the one that
+/// the last triangle was beyond, since the next one often is, too. At first 0.
 [[nodiscard]] bool MeetsInterior(const std::array<Vec3, 3>& triangle,
-                                 std::span<const Plane> planes, double inset);
+                                 std::span<const Plane> planes, double inset,
+                                 std::size_t* likely);
 
 }  // namespace drake_haptics

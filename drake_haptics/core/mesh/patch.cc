@@ -118,11 +118,13 @@ bool Patch::FillFacet(int region) {
   const std::vector<int> own = TrianglesInFacet(plane);
   double covered = 0;
   for (const int t : own) covered += mesh_.areas[t];
-  const auto is_filled = [&] {
-    return facet.IsFilledBy(covered, mesh_.tolerance);
+  const auto is_filled = [&](double more) {
+    return facet.IsFilledBy(covered + more, mesh_.tolerance);
   };
+  // Many triangles of a wide ring lie within a disk that they cannot fill.
+  if (!is_filled(mesh_.regions[region].area)) return false;
   std::vector<int> stack = own;
-  while (!is_filled() && !stack.empty()) {
+  while (!is_filled(0) && !stack.empty()) {
     const int t = stack.back();
     stack.pop_back();
     for (const int next : mesh_.neighbors[t]) {
@@ -139,7 +141,7 @@ bool Patch::FillFacet(int region) {
       stack.push_back(next);
     }
   }
-  return is_filled();
+  return is_filled(0);
 }
 
 bool Patch::IsNear(const Plane& plane, int vertex) const {

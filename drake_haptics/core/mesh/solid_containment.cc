@@ -34,12 +34,13 @@ bool SolidContainment::MeetInterior(std::span<const Plane> planes,
                                     std::span<const int> label_of_triangle,
                                     int label) const {
   constexpr double kInsetTolerances = 4;
+  std::size_t likely = 0;
   return tree_.AnyOverlap(box, [&](int t) {
     const int other = mesh_.component[t];
     if (label_of_triangle[t] == label) return false;
     if (other != component && !is_cavity_[other]) return false;
     return MeetsInterior(CornersOf(mesh_.vertices, mesh_.triangles[t]), planes,
-                         kInsetTolerances * mesh_.tolerance);
+                         kInsetTolerances * mesh_.tolerance, &likely);
   });
 }
 

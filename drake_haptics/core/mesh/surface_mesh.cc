@@ -80,7 +80,7 @@ bool LiesIn(const SurfaceMesh& mesh, int t, const Plane& plane) {
 
 PlanarRegion FloodRegion(const SurfaceMesh& mesh, int seed,
                          std::vector<int>* region_of, int region_index) {
-  PlanarRegion region{mesh.planes[seed], {seed}, false};
+  PlanarRegion region{mesh.planes[seed], {seed}, mesh.areas[seed], false};
   (*region_of)[seed] = region_index;
   if (region.plane.normal.isZero(0)) return region;
   for (std::size_t i = 0; i < region.triangles.size(); ++i) {
@@ -89,6 +89,7 @@ PlanarRegion FloodRegion(const SurfaceMesh& mesh, int seed,
       if (!LiesIn(mesh, next, region.plane)) continue;
       (*region_of)[next] = region_index;
       region.triangles.push_back(next);
+      region.area += mesh.areas[next];
     }
   }
   return region;
@@ -97,13 +98,11 @@ PlanarRegion FloodRegion(const SurfaceMesh& mesh, int seed,
 bool IsConvexPolygon(const SurfaceMesh& mesh, const PlanarRegion& region) {
   if (region.triangles.size() == 1) return true;
   std::vector<Vec3> points;
-  double area = 0;
   for (const int t : region.triangles) {
     for (const int v : mesh.triangles[t]) points.push_back(mesh.vertices[v]);
-    area += mesh.areas[t];
   }
   return FindFlatHull(points, region.plane.normal)
-      .IsFilledBy(area, mesh.tolerance);
+      .IsFilledBy(region.area, mesh.tolerance);
 }
 
 void AddRegions(SurfaceMesh* mesh) {

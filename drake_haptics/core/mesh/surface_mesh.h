@@ -22,6 +22,7 @@ struct Plane {
 struct PlanarRegion {
   Plane plane;
   std::vector<int> triangles;
+  double area = 0;         ///< of all triangles
   bool is_convex = false;  ///< together they are one convex polygon
 };
 
