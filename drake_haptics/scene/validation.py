@@ -79,7 +79,12 @@ def check_values(scene: Scene) -> None:
     materials: dict[str, Material] = {}
     for i, item in enumerate(scene.environment):
         where = f"environment[{i}]"
-        require(item.name.isidentifier(), f"{where}.name", "must be a plain name")
+        require(
+            item.name.isidentifier(),
+            f"{where}.name",
+            "must be of letters, digits and _, and not begin with a digit, since it"
+            f" names ports; is {item.name!r}",
+        )
         require(names.count(item.name) == 1, f"{where}.name", "is used twice")
         require(bool(item.mesh), f"{where}.mesh", "is missing")
         _check_shape(item, where)

@@ -186,7 +186,11 @@ def test_a_pose_is_drakes():
         ("[0, 0, 0.04]", "[0, 0, -1e200]", r"tool\.grasp\.position_m must be within"),
         ("[0.1, 0, 0]", "[1e300, 0, 0]", r"pose\.position_m must be within 1e\+09 m"),
         ("[0, 0, 0.04]", "0.04", r"tool\.grasp\.position_m: expected a list"),
-        ("- name: plate", "- name: a b", r"environment\[0\]\.name must be a plain"),
+        (
+            "- name: plate",
+            "- name: a b",
+            r"environment\[0\]\.name must be of letters, digits .* is 'a b'",
+        ),
         ("time_s: 1.5", "time_s: 0", r"waypoints\[1\]\.time_s must be later"),
         ("time_s: 0,", "time_s: 1,", r"waypoints\[0\]\.time_s must be 0"),
         ("hand:", "contact: {stiffness_N_per_m: -1}\nhand:", r"contact\.stiffness"),
