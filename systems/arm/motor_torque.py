@@ -81,9 +81,7 @@ class MotorTorque(DifferentiableSystem):
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the generalized force with its derivatives."""
         torque = self._arm.calc_joint_torques(
-            AutoDiffVector(np.zeros(1), np.zeros((1, at.num_derivatives))),
-            at["arm_state"],
-            at["F_Ho_W_rendered"],
+            at.hold(np.zeros(1)), at["arm_state"], at["F_Ho_W_rendered"]
         )
         asked = self._to_motors @ torque.value
         slope = self._to_motors @ torque.gradient

@@ -8,17 +8,13 @@ import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import Context, InputPort
 
-from drake_haptics._core import (
-    AutoDiffContactSet,
-    AutoDiffVector,
-    ContactExtrapolation,
-    ConvexPieces,
-)
+from drake_haptics._core import AutoDiffContactSet, ContactExtrapolation, ConvexPieces
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
 )
 
 
@@ -84,8 +80,8 @@ class ContactExtrapolator(DifferentiableSystem):
         """Returns the contacts with their derivatives."""
         return self._carrier.advance(
             at["contacts"],
-            _differentiate_poses(self._found, at),
-            _differentiate_poses(self._now, at),
+            join([at[port.get_name()] for port in self._found]),
+            join([at[port.get_name()] for port in self._now]),
         )
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
@@ -103,14 +99,3 @@ def _read_poses(ports: Sequence[InputPort], context: Context) -> np.ndarray:
     if len(ports) == 1:
         return ports[0].Eval(context)
     return np.concatenate([port.Eval(context) for port in ports])
-
-
-def _differentiate_poses(
-    ports: Sequence[InputPort], at: AutoDiffPoint
-) -> AutoDiffVector:
-    """Returns concatenated poses, (7 m,), with their derivatives."""
-    poses = [at[port.get_name()] for port in ports]
-    return AutoDiffVector(
-        np.concatenate([pose.value for pose in poses]),
-        np.concatenate([pose.gradient for pose in poses]),
-    )

@@ -33,6 +33,8 @@ from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
+    take,
 )
 
 DepthSearch = Literal["tracked", "global"]
@@ -216,8 +218,7 @@ class ContactQuery(DifferentiableSystem):
             raise ValueError("enable_chain: the objects must rest")
         names = ["rule", "gains", *(["shading"] if enable_shading else [])]
         self.undifferentiated = frozenset({*names, "contact_chain"})
-        p_WO = [item.X_WO.translation() for item in self._objects if item.X_WO]
-        self._at_rest = ObjectFrames(np.array(p_WO), np.zeros((len(p_WO), 6)))
+        self._at_rest = _place_at_rest(self._objects)
         return [self.DeclareAbstractInputPort(name, Value[object]()) for name in names]
 
     def get_tolerance(self, context: Context) -> float:
@@ -284,14 +285,7 @@ class ContactQuery(DifferentiableSystem):
         """Returns the contacts with their derivatives."""
         reach_m: float = at.parameters[self._tolerance]
         tracker = self._make_tracker(at.parameters[self._hint], reach_m)
-        X_WO = [
-            at[f"X_WO_{item.name}"]
-            if item.X_WO is None
-            else AutoDiffVector(
-                pose_to_vector(item.X_WO), np.zeros((7, at.num_derivatives))
-            )
-            for item in self._objects
-        ]
+        X_WO = differentiate_poses(self._objects, at)
         for i in self._X_WO:
             tracker.set_object_pose(i, X_WO[i].value)
         if self._load_shedding is not None:
@@ -357,6 +351,35 @@ class ContactQuery(DifferentiableSystem):
         contacts.set_value(tracker.query(X_WT, reach_m))
 
 
+def _place_at_rest(objects: Sequence[ContactObject]) -> ObjectFrames:
+    """Returns all objects at rest, those that move at the world's origin."""
+    p_WO = np.zeros((len(objects), 3))
+    for i, item in enumerate(objects):
+        if item.X_WO is not None:
+            p_WO[i] = item.X_WO.translation()
+    return ObjectFrames(p_WO, np.zeros((len(objects), 6)))
+
+
+def differentiate_poses(
+    objects: Sequence[ContactObject], at: AutoDiffPoint
+) -> list[AutoDiffVector]:
+    """Returns the pose (7,) of each object, m, from its port if it moves."""
+    return [
+        at[f"X_WO_{item.name}"]
+        if item.X_WO is None
+        else at.hold(pose_to_vector(item.X_WO))
+        for item in objects
+    ]
+
+
+def differentiate_velocities(
+    objects: Sequence[ContactObject], at: AutoDiffPoint
+) -> list[AutoDiffVector]:
+    """Returns the velocity (6,) of each object, rad/s and m/s, zero at rest."""
+    rest = at.hold(np.zeros(6))
+    return [at[f"V_WO_{x.name}"] if x.X_WO is None else rest for x in objects]
+
+
 class ObjectMotions:
     """Reads the poses and velocities of all objects.
 
@@ -371,6 +394,7 @@ class ObjectMotions:
             system: System under construction, which gets the ports.
             objects: Objects in the order of the query.
         """
+        self._objects = objects
         self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
         self._X_WO_ports: list[InputPort] = []
         self._V_WO_ports: list[InputPort] = []
@@ -378,14 +402,9 @@ class ObjectMotions:
             name = objects[i].name
             self._X_WO_ports.append(system.DeclareVectorInputPort(f"X_WO_{name}", 7))
             self._V_WO_ports.append(system.DeclareVectorInputPort(f"V_WO_{name}", 6))
-        self._p_WO = np.zeros((len(objects), 3))
-        self._V_WO = np.zeros((len(objects), 6))
-        for i, item in enumerate(objects):
-            if item.X_WO is not None:
-                self._p_WO[i] = item.X_WO.translation()
         # There can be a thousand objects, so those at rest are passed to the core only
         # once.
-        self._at_rest = ObjectFrames(self._p_WO, self._V_WO)
+        self._at_rest = _place_at_rest(objects)
 
     def read(self, context: Context) -> ObjectFrames:
         """Returns all objects as they are in a context."""
@@ -399,19 +418,5 @@ class ObjectMotions:
 
     def differentiate(self, at: AutoDiffPoint) -> tuple[AutoDiffVector, AutoDiffVector]:
         """Returns p_WO (3 m,) and V_WO (6 m,) with their derivatives."""
-        p_WO, V_WO = self._p_WO.copy(), self._V_WO.copy()
-        by_p_WO = np.zeros((*p_WO.shape, at.num_derivatives))
-        by_V_WO = np.zeros((*V_WO.shape, at.num_derivatives))
-        ports = zip(self._moving, self._X_WO_ports, self._V_WO_ports, strict=True)
-        for i, X_WO, V_WOi in ports:
-            X, V = at[X_WO.get_name()], at[V_WOi.get_name()]
-            p_WO[i], by_p_WO[i] = X.value[4:], X.gradient[4:]
-            V_WO[i], by_V_WO[i] = V.value, V.gradient
-        return (
-            AutoDiffVector(
-                p_WO.ravel(), by_p_WO.reshape(p_WO.size, at.num_derivatives)
-            ),
-            AutoDiffVector(
-                V_WO.ravel(), by_V_WO.reshape(V_WO.size, at.num_derivatives)
-            ),
-        )
+        p_WO = [take(X, slice(4, 7)) for X in differentiate_poses(self._objects, at)]
+        return join(p_WO), join(differentiate_velocities(self._objects, at))

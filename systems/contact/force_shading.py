@@ -10,16 +10,19 @@ from pydrake.systems.framework import Context
 
 from drake_haptics._core import (
     AutoDiffContactSet,
-    AutoDiffVector,
     ContactShading,
     ConvexPieces,
     SurfaceShading,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.contact_query import (
+    ContactObject,
+    differentiate_poses,
+)
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
 )
 
 
@@ -89,6 +92,7 @@ class ForceShading(DifferentiableSystem):
                 f"shaded must have one entry for each of the {len(objects)} objects, "
                 f"has {len(shaded)}"
             )
+        self._objects = tuple(objects)
         crease_angle = np.deg2rad(crease_angle_deg)
         self._shading = ContactShading(
             SurfaceShading(tool, crease_angle if any(shaded) else 0.0),
@@ -121,18 +125,8 @@ class ForceShading(DifferentiableSystem):
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
         """Returns the shaded contacts with their derivatives."""
-        q_WO = self._q_WO.copy()
-        by_q_WO = np.zeros((*q_WO.shape, at.num_derivatives))
-        for i, input_port in self._X_WO.items():
-            X_WO = at[input_port.get_name()]
-            q_WO[i], by_q_WO[i] = X_WO.value, X_WO.gradient
-        return self._shading.shade(
-            at["contacts"],
-            at["X_WT"],
-            AutoDiffVector(
-                q_WO.ravel(), by_q_WO.reshape(q_WO.size, at.num_derivatives)
-            ),
-        )
+        q_WO = join(differentiate_poses(self._objects, at))
+        return self._shading.shade(at["contacts"], at["X_WT"], q_WO)
 
     def _show_shading(self, context: Context, shading: AbstractValue) -> None:
         shading.set_value(self._shading)

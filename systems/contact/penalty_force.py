@@ -23,6 +23,7 @@ from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMot
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    take,
 )
 
 _GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
@@ -220,24 +221,20 @@ class PenaltyForce(DifferentiableSystem):
         self, port: str, at: AutoDiffPoint
     ) -> AutoDiffVector | AutoDiffPenaltyWrench:
         """Returns a wrench, or the whole `contact_wrench`, with derivatives."""
-        X_WT = at["X_WT"]
-        p_WO, V_WO = self._motions.differentiate(at)
         gains: ContactGains = at.parameters[self._gains]
         wrench = penalty_force(
             at["clusters"],
-            AutoDiffVector(X_WT.value[4:], X_WT.gradient[4:]),
+            take(at["X_WT"], slice(4, 7)),
             at["V_WT"],
-            p_WO,
-            V_WO,
+            *self._motions.differentiate(at),
             gains.stiffness_N_per_m,
             gains.damping_Ns_per_m,
         )
         if port == "contact_wrench":
             return wrench
         if port == "F_O_W":
-            F = wrench.F_objects_W
             rows = [6 * i + k for i in self._moving for k in range(6)]
-            return AutoDiffVector(F.value[rows], F.gradient[rows])
+            return take(wrench.F_objects_W, rows)
         return wrench.F_To_W if port == "F_To_W" else wrench.wrench_model
 
     def _read(self, context: Context) -> tuple[Any, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus
 
 from drake_haptics._core import AutoDiffVector
@@ -12,6 +11,8 @@ from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
+    take,
 )
 
 _IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -62,17 +63,11 @@ class PoseSampler(DifferentiableSystem):
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns a held pose with its derivatives."""
         start = 7 * int(self.GetOutputPort(port).get_index())
-        return AutoDiffVector(
-            at.state.value[start : start + 7], at.state.gradient[start : start + 7]
-        )
+        return take(at.state, slice(start, start + 7))
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the sampled poses with their derivatives."""
-        poses = [at[port.get_name()] for port in self._inputs]
-        return AutoDiffVector(
-            np.concatenate([pose.value for pose in poses]),
-            np.concatenate([pose.gradient for pose in poses]),
-        )
+        return join([at[port.get_name()] for port in self._inputs])
 
     def list_state_names(self) -> list[str]:
         """Returns a name for each number of the state."""

@@ -13,6 +13,7 @@ from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMot
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    take,
 )
 
 
@@ -137,18 +138,16 @@ class PreContactBraking(DifferentiableSystem):
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrench model, or the reaction, with its derivatives."""
-        X_WT = at["X_WT"]
         wrenches = pre_contact_braking(
             at["contacts"],
-            AutoDiffVector(X_WT.value[4:], X_WT.gradient[4:]),
+            take(at["X_WT"], slice(4, 7)),
             at["V_WT"],
             *self._motions.differentiate(at),
             self._gains
             if self._load_shedding is None
             else self._relieve(float(at["load_shedding"].value[1])),
         )
-        rows = self._moving if port == "F_O_W" else slice(78)
-        return AutoDiffVector(wrenches.value[rows], wrenches.gradient[rows])
+        return take(wrenches, self._moving if port == "F_O_W" else slice(78))
 
     def _calc_wrenches(self, context: Context) -> np.ndarray:
         """Returns the wrench model (78,) and the wrench (6) on each object."""

@@ -24,6 +24,7 @@ from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
 )
 
 _NOTHING_MOVES = np.zeros(0)
@@ -172,15 +173,9 @@ class StickSlipFriction(DifferentiableSystem):
         return self._differentiate_step(at).next_state
 
     def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffFrictionStep:
-        poses = [at[port.get_name()] for port in self._X_WO]
-        q_WO = AutoDiffVector(
-            np.concatenate([_NOTHING_MOVES, *(q.value for q in poses)]),
-            np.vstack(
-                [np.zeros((0, at.num_derivatives)), *(q.gradient for q in poses)]
-            ),
-        )
+        q_WO = [at.hold(_NOTHING_MOVES), *(at[port.get_name()] for port in self._X_WO)]
         return self._model.step(
-            at.state, at["clusters"], at["contact_wrench"], at["X_WT"], q_WO
+            at.state, at["clusters"], at["contact_wrench"], at["X_WT"], join(q_WO)
         )
 
     def _calc_step(self, context: Context, step: AbstractValue) -> None:

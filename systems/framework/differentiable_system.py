@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -104,6 +104,32 @@ class AutoDiffPoint:
         if port not in self._inputs:
             raise ValueError(f"input {port} of {self._system} has no value")
         return self._inputs[port]
+
+    def hold(self, value: np.ndarray) -> AutoDiffVector:
+        """Returns numbers (n,) that depend on no variable."""
+        return AutoDiffVector(value, np.zeros((len(value), self.num_derivatives)))
+
+    def sum_inputs(self, ports: Iterable[InputPort], size: int) -> AutoDiffVector:
+        """Returns the sum (size,) of those vector inputs that have a value."""
+        value, gradient = np.zeros(size), np.zeros((size, self.num_derivatives))
+        for name in (port.get_name() for port in ports):
+            if name in self:
+                value += self[name].value
+                gradient += self[name].gradient
+        return AutoDiffVector(value, gradient)
+
+
+def join(parts: Sequence[AutoDiffVector]) -> AutoDiffVector:
+    """Returns one vector of one or more others, in their order."""
+    return AutoDiffVector(
+        np.concatenate([part.value for part in parts]),
+        np.concatenate([part.gradient for part in parts]),
+    )
+
+
+def take(vector: AutoDiffVector, rows: slice | list[int]) -> AutoDiffVector:
+    """Returns some entries of a vector."""
+    return AutoDiffVector(vector.value[rows], vector.gradient[rows])
 
 
 # Conversion both ways: `ToAutoDiffXd` of pydrake 1.51 refuses a system outside of a

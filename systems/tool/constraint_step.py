@@ -28,10 +28,16 @@ from drake_haptics._core import (
     joined_coupling_wrench,
 )
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.contact_query import (
+    ContactObject,
+    differentiate_poses,
+    differentiate_velocities,
+)
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
+    take,
 )
 from drake_haptics.systems.tool.haptic_tool import STATE_NAMES
 from drake_haptics.systems.tool.virtual_coupling import coupling_wrench, gains_to_vector
@@ -245,62 +251,35 @@ class _ConstraintStep(DifferentiableSystem):
             return at.state
         if port in ("coupling", "F_Ho_W_commanded"):
             wrenches = self._differentiate_coupling(at)
-            return _take(wrenches, slice(78) if port == "coupling" else slice(78, 84))
+            return take(wrenches, slice(78) if port == "coupling" else slice(78, 84))
         step = self._differentiate_step(at)
         if port == "F_To_W":
-            return _take(step, slice(13, 19))
+            return take(step, slice(13, 19))
         rows = [19 + 6 * i + k for i in self._motions for k in range(6)]
-        return _take(step, rows)
+        return take(step, rows)
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the next state with its derivatives."""
-        return _take(self._differentiate_step(at), slice(13))
+        return take(self._differentiate_step(at), slice(13))
 
     def _differentiate_coupling(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrenches (84,) of `coupling_wrench`."""
-        fixed = np.concatenate(
-            [gains_to_vector(at.parameters[self._gains]), self._q_HT]
+        gains = at.hold(gains_to_vector(at.parameters[self._gains]))
+        return joined_coupling_wrench(
+            join([at["X_WH"], at["V_WH"], at.state, gains, at.hold(self._q_HT)])
         )
-        parts = [
-            at["X_WH"],
-            at["V_WH"],
-            at.state,
-            AutoDiffVector(fixed, np.zeros((len(fixed), at.num_derivatives))),
-        ]
-        joined = AutoDiffVector(
-            np.concatenate([part.value for part in parts]),
-            np.vstack([part.gradient for part in parts]),
-        )
-        return joined_coupling_wrench(joined)
 
     def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns next state, wrench on the tool and on each object."""
-
-        def hold(value: np.ndarray) -> AutoDiffVector:
-            return AutoDiffVector(value, np.zeros((len(value), at.num_derivatives)))
-
-        X_WO, V_WO = [], []
-        for item in self._objects:
-            if item.X_WO is None:
-                X_WO.append(at[f"X_WO_{item.name}"])
-                V_WO.append(at[f"V_WO_{item.name}"])
-            else:
-                X_WO.append(hold(pose_to_vector(item.X_WO)))
-                V_WO.append(hold(np.zeros(6)))
-        models = [
-            at[port.get_name()] for port in self._wrenches if port.get_name() in at
-        ]
-        F_To_W = AutoDiffVector(
-            sum((model.value[:6] for model in models), np.zeros(6)),
-            sum(
-                (model.gradient[:6] for model in models),
-                np.zeros((6, at.num_derivatives)),
-            ),
-        )
         # A new stepper, so that the result is a function of the Context alone.
         stepper = self._make_stepper(at.parameters[self._gains])
         return stepper.differentiate(
-            at.state, at["X_WH"], at["V_WH"], F_To_W, X_WO, V_WO
+            at.state,
+            at["X_WH"],
+            at["V_WH"],
+            take(at.sum_inputs(self._wrenches, 78), slice(6)),
+            differentiate_poses(self._objects, at),
+            differentiate_velocities(self._objects, at),
         )
 
     def list_state_names(self) -> list[str]:
@@ -380,8 +359,3 @@ class _ConstraintStep(DifferentiableSystem):
             context.get_abstract_parameter(self._gains).get_value(),
         )
         output.SetFromVector(wrenches[:78])
-
-
-def _take(vector: AutoDiffVector, rows: slice | list[int]) -> AutoDiffVector:
-    """Returns some entries of a vector."""
-    return AutoDiffVector(vector.value[rows], vector.gradient[rows])

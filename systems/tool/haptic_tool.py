@@ -179,15 +179,7 @@ class _ImplicitStep(DifferentiableSystem):
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the next state with its derivatives."""
-        models = [
-            at[port.get_name()] for port in self._wrenches if port.get_name() in at
-        ]
-        wrench_model = AutoDiffVector(
-            sum((model.value for model in models), np.zeros(78)),
-            sum(
-                (model.gradient for model in models), np.zeros((78, at.num_derivatives))
-            ),
-        )
+        wrench_model = at.sum_inputs(self._wrenches, 78)
         return self._dynamics.step(at.state, wrench_model, self._period_s)
 
     def list_state_names(self) -> list[str]:

@@ -10,12 +10,13 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteValues,
 )
-from pydrake.systems.primitives import Demultiplexer
 
 from drake_haptics._core import AutoDiffVector, PassivityBounds, passivity_control
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    export_parts,
+    take,
 )
 
 _AT_ORIGIN = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -104,10 +105,8 @@ class PassivityControl(Diagram):
             builder.ExportInput(
                 port.get_input_port(i), port.get_input_port(i).get_name()
             )
-        parts = builder.AddNamedSystem("parts", Demultiplexer([6, 1, 7]))
-        builder.Connect(port.get_output_port(), parts.get_input_port(0))
-        builder.ExportOutput(parts.get_output_port(0), "F_Ho_W_commanded")
-        builder.ExportOutput(parts.get_output_port(1), "energy_J")
+        shown = {"F_Ho_W_commanded": 6, "energy_J": 1}
+        export_parts(builder, port.get_output_port(), shown)
         builder.BuildInto(self)
 
     def begin(self, context: Context) -> None:
@@ -175,5 +174,4 @@ class _ObservedPort(DifferentiableSystem):
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the next state with its derivatives."""
-        both = self.differentiate("shown_and_state", at)
-        return AutoDiffVector(both.value[6:], both.gradient[6:])
+        return take(self.differentiate("shown_and_state", at), slice(6, 14))

@@ -12,6 +12,7 @@ from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    join,
 )
 
 STANDARD_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.81)
@@ -83,10 +84,7 @@ class ToolGravity(DifferentiableSystem):
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrench model with its derivatives."""
         weight = tool_weight(at["X_WT"], self._p_TTcm, self._weight_W)
-        return AutoDiffVector(
-            np.concatenate([weight.value, np.zeros(72)]),
-            np.vstack([weight.gradient, np.zeros((72, at.num_derivatives))]),
-        )
+        return join([weight, at.hold(np.zeros(72))])
 
 
 def _check_vector(name: str, vector: Sequence[float]) -> np.ndarray:

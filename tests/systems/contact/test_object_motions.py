@@ -8,6 +8,7 @@ from pydrake.systems.framework import LeafSystem
 
 from drake_haptics._core import AutoDiffVector, ObjectFrames
 from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
+from drake_haptics.systems.framework.differentiable_system import AutoDiffPoint
 
 
 class Asking(LeafSystem):
@@ -47,6 +48,7 @@ class Point(dict):
     """Inputs by name, with derivatives by four variables."""
 
     num_derivatives = 4
+    hold = AutoDiffPoint.hold
 
 
 def test_only_what_moves_has_derivatives(core):
