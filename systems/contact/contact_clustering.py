@@ -141,7 +141,7 @@ class ContactClustering(DifferentiableSystem):
         self._clusters = self.DeclareAbstractOutputPort(
             "clusters",
             Value[object],
-            self._calc_clusters if self._load_shedding is None else self._calc_fewer,
+            self._calc_clusters,
             {self.all_input_ports_ticket(), self.pa_ticket()},
         )
         self.DeclareAbstractOutputPort(
@@ -177,10 +177,8 @@ class ContactClustering(DifferentiableSystem):
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffClusterSet:
         """Returns the clusters with their derivatives."""
-        rule: ClusteringRule = at.parameters[self._rule]
-        if self._load_shedding is None:
-            return _cluster(at["contacts"], rule.tolerance_m, rule.delta_m)
-        return _cluster_fewer(at["contacts"], rule, at["load_shedding"].value)
+        shed = None if self._load_shedding is None else at["load_shedding"].value
+        return _cluster(at["contacts"], at.parameters[self._rule], shed)
 
     def _show_rule(self, context: Context, rule: AbstractValue) -> None:
         rule.set_value(self.get_rule(context))
@@ -190,7 +188,9 @@ class ContactClustering(DifferentiableSystem):
         contacts = self._eval_contacts(context)
         if self._warns_deep:
             self.warn_of_depth(context, contacts.least_distance, rule.tolerance_m)
-        clusters.set_value(_cluster(contacts, rule.tolerance_m, rule.delta_m))
+        shedding = self._load_shedding
+        shed = None if shedding is None else shedding.Eval(context)
+        clusters.set_value(_cluster(contacts, rule, shed))
 
     def warn_of_depth(
         self, context: Context, least_distance_m: float, tolerance_m: float
@@ -213,56 +213,31 @@ class ContactClustering(DifferentiableSystem):
             # Drake calls this, so the user's line is not known.
             warnings.warn(sentence, SceneWarning, stacklevel=1)
 
-    def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
-        assert self._load_shedding is not None
-        clusters.set_value(
-            _cluster_fewer(
-                self._contacts.Eval(context),
-                self.get_rule(context),
-                self._load_shedding.Eval(context),
-            )
-        )
-
 
 @overload
-def _cluster_fewer(
-    contacts: ContactSet, rule: ClusteringRule, load_shedding: np.ndarray
+def _cluster(
+    contacts: ContactSet, rule: ClusteringRule, load_shedding: np.ndarray | None
 ) -> ClusterSet: ...
 
 
 @overload
-def _cluster_fewer(
-    contacts: AutoDiffContactSet, rule: ClusteringRule, load_shedding: np.ndarray
+def _cluster(
+    contacts: AutoDiffContactSet, rule: ClusteringRule, load_shedding: np.ndarray | None
 ) -> AutoDiffClusterSet: ...
 
 
-def _cluster_fewer(
+def _cluster(
     contacts: ContactSet | AutoDiffContactSet,
     rule: ClusteringRule,
-    load_shedding: np.ndarray,
+    load_shedding: np.ndarray | None,
 ) -> ClusterSet | AutoDiffClusterSet:
-    """Applies a rule while the loop sheds load."""
-    _, reach_share, cell_m = load_shedding
-    if cell_m > 0.0:
-        contacts = thin_contacts(contacts, cell_m)
-    return _cluster(contacts, reach_share * rule.tolerance_m, rule.delta_m)
-
-
-@overload
-def _cluster(
-    contacts: ContactSet, tolerance_m: float, delta_m: float | None
-) -> ClusterSet: ...
-
-
-@overload
-def _cluster(
-    contacts: AutoDiffContactSet, tolerance_m: float, delta_m: float | None
-) -> AutoDiffClusterSet: ...
-
-
-def _cluster(
-    contacts: ContactSet | AutoDiffContactSet, tolerance_m: float, delta_m: float | None
-) -> ClusterSet | AutoDiffClusterSet:
-    if delta_m is None:
+    """Applies a rule, to fewer contacts while the loop sheds load."""
+    tolerance_m = rule.tolerance_m
+    if load_shedding is not None:
+        _, reach_share, cell_m = load_shedding
+        tolerance_m *= reach_share
+        if cell_m > 0.0:
+            contacts = thin_contacts(contacts, cell_m)
+    if rule.delta_m is None:
         return share_stiffness(contacts, tolerance_m)
-    return cluster_contacts(contacts, delta_m, tolerance_m)
+    return cluster_contacts(contacts, rule.delta_m, tolerance_m)
