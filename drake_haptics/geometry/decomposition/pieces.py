@@ -88,15 +88,16 @@ class ConvexHulls:
     """Pieces that are hulls of points.
 
     Attributes:
-        points: (p, 3) points of all hulls, m.
-        start: (k + 1,) int32: hull i has the points start[i] to start[i + 1].
+        hull_points: (p, 3) points of all hulls, m.
+        hull_start: (k + 1,) int32: hull i has the points from hull_start[i] to
+            hull_start[i + 1].
         tolerance: Distance within which a hull's facet counts as on the mesh, m;
             infinite if the hulls replace the mesh.
         seconds: Time that it took to make them, s.
     """
 
-    points: np.ndarray
-    start: np.ndarray
+    hull_points: np.ndarray
+    hull_start: np.ndarray
     tolerance: float
     seconds: float
 
@@ -110,8 +111,8 @@ class ConvexHulls:
     def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
         """Makes the pieces, and finds which of their facets are on the mesh."""
         hulls = [
-            self.points[a:b]
-            for a, b in zip(self.start[:-1], self.start[1:], strict=True)
+            self.hull_points[a:b]
+            for a, b in zip(self.hull_start[:-1], self.hull_start[1:], strict=True)
         ]
         return _core.adopt_convex_pieces(
             mesh.vertices, mesh.triangles, hulls, self.tolerance
@@ -120,16 +121,16 @@ class ConvexHulls:
     def fits(self, mesh: Mesh) -> bool:
         """Returns whether the hulls are well formed; they may fit any mesh."""
         return bool(
-            self.points.dtype == np.float64
-            and self.points.ndim == 2
-            and self.points.shape[1] == 3
-            and np.isfinite(self.points).all()
-            and self.start.dtype == np.int32
-            and self.start.ndim == 1
-            and len(self.start) >= 2
-            and self.start[0] == 0
-            and self.start[-1] == len(self.points)
-            and (np.diff(self.start) > 0).all()
+            self.hull_points.dtype == np.float64
+            and self.hull_points.ndim == 2
+            and self.hull_points.shape[1] == 3
+            and np.isfinite(self.hull_points).all()
+            and self.hull_start.dtype == np.int32
+            and self.hull_start.ndim == 1
+            and len(self.hull_start) >= 2
+            and self.hull_start[0] == 0
+            and self.hull_start[-1] == len(self.hull_points)
+            and (np.diff(self.hull_start) > 0).all()
             and self.tolerance > 0
         )
 

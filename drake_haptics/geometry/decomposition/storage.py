@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,12 @@ from drake_haptics.geometry.mesh.report import MeshReport
 
 FORMAT_NAME = "drake_haptics decomposition"
 FORMAT_VERSION = 1
+# Pieces are stored by the names of their fields.
+_KINDS: dict[str, type[PieceData]] = {
+    "patches": PatchLabels,
+    "merged": MergedPatches,
+    "hulls": ConvexHulls,
+}
 
 
 def cache_key(mesh: Mesh, method: str, parameters: dict[str, Any]) -> str:
@@ -120,51 +126,19 @@ def _component(data: dict[str, Any]) -> Component:
 
 
 def _pack_pieces(pieces: PieceData) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    if isinstance(pieces, PatchLabels):
-        return (
-            {"kind": "patches", "seconds": pieces.seconds},
-            {"piece_of_triangle": pieces.piece_of_triangle},
-        )
-    if isinstance(pieces, MergedPatches):
-        return (
-            {
-                "kind": "merged",
-                "seconds": pieces.seconds,
-                "error_m": pieces.error_m,
-                "departure_m": pieces.departure_m,
-            },
-            {
-                "piece_of_triangle": pieces.piece_of_triangle,
-                "group_of_piece": pieces.group_of_piece,
-            },
-        )
-    return (
-        {"kind": "hulls", "seconds": pieces.seconds, "tolerance": pieces.tolerance},
-        {"hull_points": pieces.points, "hull_start": pieces.start},
-    )
+    (kind,) = (name for name, of in _KINDS.items() if isinstance(pieces, of))
+    facts: dict[str, Any] = {"kind": kind}
+    arrays: dict[str, np.ndarray] = {}
+    for name, value in vars(pieces).items():
+        (arrays if isinstance(value, np.ndarray) else facts)[name] = value
+    return facts, arrays
 
 
 def _unpack_pieces(
     path: Path, facts: dict[str, Any], arrays: dict[str, np.ndarray], mesh: Mesh
 ) -> PieceData:
-    pieces: PieceData
-    if facts["kind"] == "patches":
-        pieces = PatchLabels(arrays["piece_of_triangle"], facts["seconds"])
-    elif facts["kind"] == "merged":
-        pieces = MergedPatches(
-            arrays["piece_of_triangle"],
-            arrays["group_of_piece"],
-            facts["error_m"],
-            facts["departure_m"],
-            facts["seconds"],
-        )
-    else:
-        pieces = ConvexHulls(
-            arrays["hull_points"],
-            arrays["hull_start"],
-            facts["tolerance"],
-            facts["seconds"],
-        )
+    kind, stored = _KINDS[facts["kind"]], {**facts, **arrays}
+    pieces = kind(**{field.name: stored[field.name] for field in fields(kind)})
     if not pieces.fits(mesh):
         raise DecompositionFileError(f"{path}: its pieces do not fit its mesh")
     return pieces
