@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from enum import Enum
 from typing import Any
 
@@ -91,6 +91,10 @@ class Findings(list[Finding]):
             self.append(Finding(code, severity, count, message, action))
 
 
+# Keys in plain data that differ from the names of their attributes.
+_KEYS = {"extent": "extent_m", "area": "area_m2", "volume": "volume_m3"}
+
+
 @dataclass(frozen=True)
 class MeshReport:
     """Size and kind of a mesh, and every finding of its intake.
@@ -170,40 +174,25 @@ class MeshReport:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain data for JSON; lengths in m, areas in m², volumes in m³."""
+        data = {_KEYS.get(name, name): value for name, value in vars(self).items()}
         return {
-            "source": self.source,
-            "meters_per_unit": self.meters_per_unit,
-            "vertices": self.vertices,
-            "triangles": self.triangles,
-            "components": self.components,
-            "solids": self.solids,
-            "one_sided_triangles": self.one_sided_triangles,
+            **data,
             "extent_m": list(self.extent),
-            "area_m2": self.area,
-            "volume_m3": self.volume,
-            "verdict": self.verdict,
             "findings": [finding.to_dict() for finding in self.findings],
-            "decimation_error_m": self.decimation_error_m,
+            "verdict": self.verdict,
         }
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> MeshReport:
         """Reads the data of `to_dict`."""
+        own = {
+            field.name: _KEYS.get(field.name, field.name)
+            for field in fields(MeshReport)
+        }
+        known = {name: data[key] for name, key in own.items() if key in data}
         x, y, z = data["extent_m"]
-        return MeshReport(
-            source=data["source"],
-            meters_per_unit=data["meters_per_unit"],
-            vertices=data["vertices"],
-            triangles=data["triangles"],
-            components=data["components"],
-            solids=data["solids"],
-            one_sided_triangles=data["one_sided_triangles"],
-            extent=(x, y, z),
-            area=data["area_m2"],
-            volume=data["volume_m3"],
-            findings=tuple(map(Finding.from_dict, data["findings"])),
-            decimation_error_m=data.get("decimation_error_m", 0.0),
-        )
+        findings = tuple(map(Finding.from_dict, data["findings"]))
+        return MeshReport(**{**known, "extent": (x, y, z), "findings": findings})
 
     def __rich_console__(
         self, console: Console, options: ConsoleOptions
