@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,6 +18,7 @@ from drake_haptics._core import (
     penalty_force,
     penalty_wrench_model,
 )
+from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
@@ -56,11 +56,7 @@ class ContactGains:
                 raise ValueError(
                     f"{name} must have one value for each object, (n,), is {gains}"
                 )
-            for gain in copied:
-                if not (gain >= 0.0 and math.isfinite(gain)):
-                    raise ValueError(
-                        f"{name} must be finite and not negative, has {gain:g}"
-                    )
+            check_at_least(0, **{name: copied})
             copied.flags.writeable = False
             object.__setattr__(self, name, copied)
         if len(self.stiffness_N_per_m) != len(self.damping_Ns_per_m):

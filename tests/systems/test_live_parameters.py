@@ -229,7 +229,7 @@ def test_bad_values_are_refused_and_the_context_is_as_it_was(query, bad):
         ClusteringRule("shared", bad)
     with pytest.raises(ValueError, match=r"^delta_m must be positive and finite"):
         ClusteringRule("octree", 1e-3, bad)
-    with pytest.raises(ValueError, match=r"^stiffness_N_per_m must be finite and not"):
+    with pytest.raises(ValueError, match=r"^stiffness_N_per_m must be at least 0 and"):
         ContactGains(np.array([bad]), np.array([1.0]))
 
 
