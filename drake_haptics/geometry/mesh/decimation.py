@@ -10,7 +10,6 @@ used.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from drake_haptics import _core
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
 from drake_haptics.common.type_checks import require_kinds
-from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh, continue_report
 from drake_haptics.geometry.mesh.report import Finding, Severity, length
 
 # Numbers of counts that are tried; the first one usually works.
@@ -143,9 +142,10 @@ def _is_alike(mesh: Mesh, fewer: Mesh) -> bool:
 
 
 def _report_error(mesh: Mesh, fewer: Mesh) -> Mesh:
-    error_m = _core.surface_distance(
+    added_m = _core.surface_distance(
         mesh.vertices, mesh.triangles, fewer.vertices, fewer.triangles
     )
+    error_m = mesh.report.decimation_error_m + added_m
     extent_m = max(mesh.report.extent)
     is_large = error_m > _LARGEST_USUAL_ERROR * extent_m
     finding = Finding(
@@ -162,11 +162,4 @@ def _report_error(mesh: Mesh, fewer: Mesh) -> Mesh:
             else ""
         ),
     )
-    findings = (*mesh.report.findings, finding)
-    report = replace(
-        fewer.report,
-        meters_per_unit=mesh.report.meters_per_unit,
-        findings=findings,
-        decimation_error_m=error_m,
-    )
-    return replace(fewer, report=report)
+    return continue_report(fewer, mesh, finding, added_m)

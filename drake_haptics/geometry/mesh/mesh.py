@@ -8,7 +8,7 @@ only the surface counts.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,7 +36,7 @@ from drake_haptics.geometry.mesh.repair import (
     remove_zero_area_faces,
     separate_components,
 )
-from drake_haptics.geometry.mesh.report import Findings, MeshReport, Severity
+from drake_haptics.geometry.mesh.report import Finding, Findings, MeshReport, Severity
 from drake_haptics.geometry.mesh.units import meters_per_unit
 from drake_haptics.geometry.mesh.winding import Winding, wind_components
 
@@ -280,6 +280,26 @@ def _read_only(array: np.ndarray, dtype: Any) -> np.ndarray:
     result = np.array(array, dtype=dtype, order="C")  # a copy
     result.flags.writeable = False
     return result
+
+
+def continue_report(
+    mesh: Mesh, before: Mesh, finding: Finding, error_m: float = 0.0
+) -> Mesh:
+    """Returns a mesh that was made of another one, with its findings and one more.
+
+    Args:
+        mesh: The mesh.
+        before: Mesh of which it was made, whose unit and error stay.
+        finding: Finding that says what was done.
+        error_m: Distance between both surfaces, m.
+    """
+    report = replace(
+        mesh.report,
+        meters_per_unit=before.report.meters_per_unit,
+        findings=(*before.report.findings, finding),
+        decimation_error_m=before.report.decimation_error_m + error_m,
+    )
+    return replace(mesh, report=report)
 
 
 def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:

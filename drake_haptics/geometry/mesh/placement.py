@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh, continue_report
 from drake_haptics.geometry.mesh.report import Finding, Severity, length
 
 # Number of nodes across the smaller mesh, unless that makes too many.
@@ -152,12 +150,7 @@ def center(mesh: Mesh) -> Mesh:
         f"the middle of the mesh was at ({place}) m",
         "moved to the origin",
     )
-    report = replace(
-        moved.report,
-        meters_per_unit=mesh.report.meters_per_unit,
-        findings=(*mesh.report.findings, finding),
-    )
-    return replace(moved, report=report)
+    return continue_report(moved, mesh, finding)
 
 
 def find_origin_beside(mesh: Mesh) -> float | None:

@@ -111,8 +111,8 @@ class MeshReport:
         area: Area of the surface, m².
         volume: Volume of the solids, m³, counted once for each; cavities subtract.
         findings: Findings in the order in which they were made.
-        decimation_error_m: Largest distance between this surface and that of the file,
-            m; 0 without decimation.
+        decimation_error_m: Bound on the distance between this surface and that of the
+            file, m; 0 without decimation.
     """
 
     source: str

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.mesh.placement import center, find_origin_beside
 from drake_haptics.scene.geometry import cut_scene
@@ -39,6 +40,13 @@ def test_what_was_found_before_stays_in_the_report():
     assert found
     centered = [finding.code for finding in center(open_box).report.findings]
     assert centered == [*found, "centered"]
+
+
+def test_a_decimated_mesh_that_is_centered_keeps_its_error():
+    ball = trimesh.creation.icosphere(2)
+    few = decimate(Mesh.from_arrays(ball.vertices + AWAY, ball.faces), 100)
+    assert 0.0 < few.report.decimation_error_m
+    assert center(few).report.decimation_error_m == few.report.decimation_error_m
 
 
 @pytest.mark.parametrize(

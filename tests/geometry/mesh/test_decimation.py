@@ -49,6 +49,16 @@ def test_a_solid_stays_a_solid_and_the_error_is_that_of_dense_samples(name, shar
     assert sampled <= error_m <= 1.25 * sampled
 
 
+def test_the_error_of_a_mesh_that_is_decimated_twice_is_from_the_first():
+    mesh = shape("torus")
+    count = len(mesh.triangles)
+    fewer = decimate(decimate(mesh, count // 2), count // 2 - 10)
+    between_m = _core.surface_distance(
+        mesh.vertices, mesh.triangles, fewer.vertices, fewer.triangles
+    )
+    assert fewer.report.decimation_error_m >= between_m
+
+
 def test_the_error_between_two_planes_is_their_distance():
     V, F = box()
     F = F.astype(np.int32)
