@@ -7,6 +7,7 @@ from press_tools import MODELS
 
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.decomposition.pieces import cut_fans
 from drake_haptics.geometry.mesh.mesh import load_mesh
 
 IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0])
@@ -21,12 +22,10 @@ def hull(points: object) -> _core.ConvexPieces:
     """One convex piece, whole boundary."""
     points = np.asarray(points, dtype=float)
     polytope = _core.ConvexPolytope(points)
-    triangles = []
-    for loop in polytope.facets:
-        triangles += [[loop[0], loop[k], loop[k + 1]] for k in range(1, len(loop) - 1)]
+    triangles = cut_fans(polytope.facets)
     return _core.decompose_surface(
         polytope.vertices,
-        np.array(triangles, dtype=np.int32),
+        triangles,
         np.ones(len(triangles), dtype=np.uint8),
     )
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.decomposition.pieces import cut_fans
 from drake_haptics.geometry.mesh.mesh import Mesh, calc_mass_properties, load_mesh
 from drake_haptics.models import FOLDER
 
@@ -66,12 +67,7 @@ def make_tool(mesh: Mesh, pushes_T: object, *, flat: bool = False) -> PressTool:
 def hull_mesh(points: np.ndarray) -> Mesh:
     """The convex hull of points (n, 3), m, as a mesh."""
     hull = _core.ConvexPolytope(points)
-    triangles = [
-        (loop[0], loop[i], loop[i + 1])
-        for loop in hull.facets
-        for i in range(1, len(loop) - 1)
-    ]
-    return Mesh.from_arrays(hull.vertices, np.array(triangles))
+    return Mesh.from_arrays(hull.vertices, cut_fans(hull.facets))
 
 
 def make_tools() -> dict[str, PressTool]:

@@ -22,6 +22,7 @@ import numpy as np
 from drake_haptics.common.disk_cache import cache_folder
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.geometry.decomposition.pieces import cut_fans
 
 # Types of arguments.
 REALS = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
@@ -102,12 +103,7 @@ def add_pieces(
     """Adds convex pieces to a scene in an adapter of coal."""
     for piece in decomposition.pieces:
         vertices = np.ascontiguousarray(piece.vertices)
-        fans = [
-            (loop[0], loop[k], loop[k + 1])
-            for loop in piece.facets
-            for k in range(1, len(loop) - 1)
-        ]
-        triangles = np.array(fans, dtype=np.int32)
+        triangles = cut_fans(piece.facets)
         add(
             *(scene, owner, vertices, len(vertices)),
             *(triangles, len(triangles), np.ascontiguousarray(X_WO)),

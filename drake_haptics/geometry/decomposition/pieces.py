@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -158,6 +158,12 @@ class ColoredTriangles:
         return np.arange(len(self.vertices)).reshape(-1, 3)
 
 
+def cut_fans(facets: Iterable[Sequence[int]]) -> np.ndarray:
+    """Returns the triangles (k, 3) int32 of facets with these vertices in order."""
+    fans = [(loop[0], a, b) for loop in facets for a, b in pairwise(loop[1:])]
+    return np.array(fans, dtype=np.int32)
+
+
 def each_facet(
     pieces: Sequence[_core.ConvexPolytope],
 ) -> Iterator[tuple[int, bool, np.ndarray]]:
@@ -173,8 +179,7 @@ def each_facet(
         points = np.asarray(piece.vertices)
         sides = list(zip(piece.facets, piece.facet_original, strict=True))
         for loop, original in sides if piece.dimension == 3 else sides[:1]:
-            fan = np.array([(loop[0], *pair) for pair in pairwise(loop[1:])])
-            yield index, original, points[fan.ravel()]
+            yield index, original, points[cut_fans([loop]).ravel()]
 
 
 def piece_surfaces(

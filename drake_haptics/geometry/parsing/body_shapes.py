@@ -31,6 +31,7 @@ from pydrake.multibody.tree import RigidBody
 from drake_haptics import _core
 from drake_haptics.common.errors import MeshError
 from drake_haptics.geometry.decomposition.decompose import Progress, decompose
+from drake_haptics.geometry.decomposition.pieces import cut_fans
 from drake_haptics.geometry.mesh.mesh import Mesh as IntakeMesh
 from drake_haptics.geometry.mesh.reader import RawMesh, read_mesh_file
 from drake_haptics.geometry.mesh.round_shapes import (
@@ -181,15 +182,9 @@ def _make_convex(corners: np.ndarray) -> _core.ConvexPieces:
     hull = _core.ConvexPolytope(corners)
     if hull.dimension < 3:
         raise ValueError("has no volume, so that nothing can be inside of it")
-    triangles = [
-        (loop[0], loop[k], loop[k + 1])
-        for loop in hull.facets
-        for k in range(1, len(loop) - 1)
-    ]
+    triangles = cut_fans(hull.facets)
     return _core.assemble_surface_pieces(
-        hull.vertices,
-        np.array(triangles, dtype=np.int32),
-        np.zeros(len(triangles), dtype=np.int32),
+        hull.vertices, triangles, np.zeros(len(triangles), dtype=np.int32)
     )
 
 
