@@ -16,7 +16,6 @@ from pydrake.systems.framework import (
     Context,
     InputPort,
     LeafSystem,
-    ValueProducer,
 )
 
 from drake_haptics._core import (
@@ -31,6 +30,7 @@ from drake_haptics._core import (
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.systems.framework.differentiable_system import (
+    NOTHING,
     AutoDiffPoint,
     DifferentiableSystem,
     join,
@@ -38,9 +38,6 @@ from drake_haptics.systems.framework.differentiable_system import (
 )
 
 DepthSearch = Literal["tracked", "global"]
-
-# Value of the cache before the first query. (A Value of Drake 1.58 cannot hold None.)
-_NOTHING = "nothing"
 
 
 @dataclass(frozen=True)
@@ -170,19 +167,15 @@ class ContactQuery(DifferentiableSystem):
             if enable_load_shedding
             else None
         )
-        self._hint = self.DeclareAbstractParameter(Value[object](_NOTHING))
+        self._hint = self.DeclareAbstractParameter(Value[object](NOTHING))
         self._tolerance = self.DeclareAbstractParameter(Value[object](tolerance_m))
         from_hint, from_tolerance = (
             self.abstract_parameter_ticket(AbstractParameterIndex(parameter))
             for parameter in (self._hint, self._tolerance)
         )
         # A list of the hint, which is empty once a search has started from it.
-        self._eval_unread = self.DeclareCacheEntry(
-            description="unread hint",
-            value_producer=ValueProducer(
-                allocate=lambda: Value[object](_NOTHING), calc=self._list_hint
-            ),
-            prerequisites_of_calc={from_hint},
+        self._eval_unread = self.DeclareObjectCacheEntry(
+            "unread hint", self._list_hint, {from_hint}
         ).Eval
         from_parameters = {from_hint, from_tolerance}
         self._contacts = self.DeclareAbstractOutputPort(
@@ -199,17 +192,13 @@ class ContactQuery(DifferentiableSystem):
             self._law = self._declare_law(enable_shading)
             self._eval_tracker = self.DeclareAbstractOutputPort(
                 "contact_chain",
-                lambda: Value[object](_NOTHING),
+                lambda: Value[object](NOTHING),
                 self._prepare_tracker,
                 {*from_parameters, *(port.ticket() for port in self._law)},
             ).Eval
         else:
-            self._eval_tracker = self.DeclareCacheEntry(
-                description="tracker",
-                value_producer=ValueProducer(
-                    allocate=lambda: Value[object](_NOTHING), calc=self._prepare_tracker
-                ),
-                prerequisites_of_calc=from_parameters,
+            self._eval_tracker = self.DeclareObjectCacheEntry(
+                "tracker", self._prepare_tracker, from_parameters
             ).Eval
 
     def _declare_law(self, enable_shading: bool) -> list[InputPort]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import BasicVector, Context, ValueProducer
+from pydrake.systems.framework import BasicVector, Context
 
 from drake_haptics._core import AutoDiffVector, BrakingGains, pre_contact_braking
 from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
@@ -127,14 +127,9 @@ class PreContactBraking(DifferentiableSystem):
                 "F_O_W", len(self._moving), self._calc_F_O_W, from_inputs
             )
             # The wrench on the tool and the reaction share one result.
-            shared = self.DeclareCacheEntry(
-                description="wrenches",
-                value_producer=ValueProducer(
-                    allocate=lambda: Value[object](), calc=self._keep_wrenches
-                ),
-                prerequisites_of_calc=from_inputs,
-            )
-            self._eval_wrenches = shared.Eval
+            self._eval_wrenches = self.DeclareObjectCacheEntry(
+                "wrenches", self._keep_wrenches, from_inputs
+            ).Eval
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrench model, or the reaction, with its derivatives."""

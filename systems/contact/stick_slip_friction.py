@@ -6,12 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    DiscreteValues,
-    ValueProducer,
-)
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues
 
 from drake_haptics._core import (
     AutoDiffFrictionStep,
@@ -145,13 +140,7 @@ class StickSlipFriction(DifferentiableSystem):
         self.DeclareDiscreteState(self._model.state_size)
         from_all = {self.all_input_ports_ticket(), self.xd_ticket()}
         # Output and update of a tick share one result of the core.
-        self._step = self.DeclareCacheEntry(
-            description="step",
-            value_producer=ValueProducer(
-                allocate=lambda: Value[object](), calc=calc_step
-            ),
-            prerequisites_of_calc=from_all,
-        )
+        self._step = self.DeclareObjectCacheEntry("step", calc_step, from_all)
         from_step = {self._step.ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_step

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,10 @@ from pydrake.autodiffutils import (
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector_,
+    CacheEntry,
+    Context,
     Context_,
+    DependencyTicket,
     DiagramBuilder,
     DiscreteValues_,
     InputPort,
@@ -26,6 +29,7 @@ from pydrake.systems.framework import (
     LeafSystem_,
     OutputPort,
     PortDataType,
+    ValueProducer,
 )
 from pydrake.systems.primitives import Demultiplexer, Multiplexer
 from pydrake.systems.scalar_conversion import TemplateSystem
@@ -35,6 +39,10 @@ from drake_haptics._core import AutoDiffVector, make_witness_override
 # After each unrestricted update Drake asks every Python system for its witness
 # functions. Calling this override takes less time than finding none.
 get_no_witness_functions = make_witness_override()
+
+
+# Value of a cache entry before its first one. (A Value of Drake 1.58 cannot hold None.)
+NOTHING = "nothing"
 
 
 class AutoDiffPoint:
@@ -192,6 +200,21 @@ class DifferentiableSystem(_Convertible):
 
     undifferentiated: frozenset[str] = frozenset()
     DoGetWitnessFunctions = get_no_witness_functions
+
+    def DeclareObjectCacheEntry(
+        self,
+        description: str,
+        calc: Callable[[Context, AbstractValue], None],
+        prerequisites: set[DependencyTicket],
+    ) -> CacheEntry:
+        """Declares a cache entry of a Python object, at first `NOTHING`."""
+        return self.DeclareCacheEntry(
+            description=description,
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](NOTHING), calc=calc
+            ),
+            prerequisites_of_calc=prerequisites,
+        )
 
     @abstractmethod
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:

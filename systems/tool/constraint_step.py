@@ -15,7 +15,6 @@ from pydrake.systems.framework import (
     DiscreteValues,
     EventStatus,
     State,
-    ValueProducer,
 )
 
 from drake_haptics._core import (
@@ -41,9 +40,6 @@ from drake_haptics.systems.framework.differentiable_system import (
 )
 from drake_haptics.systems.tool.haptic_tool import STATE_NAMES
 from drake_haptics.systems.tool.virtual_coupling import coupling_wrench, gains_to_vector
-
-# Value of the caches before the first step. (A Value of Drake 1.58 cannot hold None.)
-_NOTHING = "nothing"
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,21 +123,13 @@ class _ConstraintStep(DifferentiableSystem):
                 " contact.law: penalty"
             )
         # What a Context remembers of the last search.
-        self._stepper = self.DeclareCacheEntry(
-            description="stepper",
-            value_producer=ValueProducer(
-                allocate=lambda: Value[object](_NOTHING), calc=self._prepare_stepper
-            ),
-            prerequisites_of_calc={self.pa_ticket()},
+        self._stepper = self.DeclareObjectCacheEntry(
+            "stepper", self._prepare_stepper, {self.pa_ticket()}
         )
         from_all = {self.all_input_ports_ticket(), self.xd_ticket(), self.pa_ticket()}
         # Outputs and update of a tick share one result of the core.
-        self._result = self.DeclareCacheEntry(
-            description="result",
-            value_producer=ValueProducer(
-                allocate=lambda: Value[object](_NOTHING), calc=self._calc_result
-            ),
-            prerequisites_of_calc=from_all,
+        self._result = self.DeclareObjectCacheEntry(
+            "result", self._calc_result, from_all
         )
         from_result = {self._result.ticket()}
         self.DeclareStateOutputPort("state", state)
