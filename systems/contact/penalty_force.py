@@ -26,8 +26,6 @@ from drake_haptics.systems.framework.differentiable_system import (
     take,
 )
 
-_GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
-
 
 @dataclass(frozen=True, eq=False)
 class ContactGains:
@@ -49,7 +47,7 @@ class ContactGains:
 
     def __post_init__(self) -> None:
         """Checks the gains and takes read-only copies."""
-        for name in _GAINS:
+        for name in ("stiffness_N_per_m", "damping_Ns_per_m"):
             gains = getattr(self, name)
             copied = np.array(gains, dtype=float)
             if copied.ndim != 1:
@@ -244,14 +242,13 @@ class PenaltyForce(DifferentiableSystem):
         )
 
     def _check_number(self, gains: ContactGains) -> None:
-        """Raises ValueError unless there is one gain of each kind for each object."""
-        for name in _GAINS:
-            values = getattr(gains, name)
-            if len(values) != self._num_objects:
-                raise ValueError(
-                    f"{name} must have one value for each of the {self._num_objects}"
-                    f" objects, has {len(values)}"
-                )
+        """Raises ValueError unless there are gains of each object."""
+        number = len(gains.stiffness_N_per_m)
+        if number != self._num_objects:
+            raise ValueError(
+                "stiffness_N_per_m must have one value for each of the"
+                f" {self._num_objects} objects, has {number}"
+            )
 
     def _show_gains(self, context: Context, gains: AbstractValue) -> None:
         gains.set_value(self.get_gains(context))
