@@ -186,20 +186,18 @@ def piece_surfaces(
     pieces: list[_core.ConvexPolytope],
 ) -> tuple[ColoredTriangles, ColoredTriangles]:
     """Returns the facets on the mesh, colored by piece, and the virtual ones."""
-    corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    owners: tuple[list[int], list[int]] = ([], [])
-    for index, original, points in each_facet(pieces):
-        kind = 0 if original else 1
-        corners[kind].append(points)
-        owners[kind].append(index)
+    facets = list(each_facet(pieces))
     palette = np.array([piece_color(i)[:3] for i in range(len(pieces))])
-    surfaces = []
-    for kind in (0, 1):
-        vertices = np.concatenate([np.empty((0, 3)), *corners[kind]])
-        counts = [len(points) for points in corners[kind]]
-        piece_of = np.repeat(np.array(owners[kind], dtype=int), counts)
-        colors = palette[piece_of] if kind == 0 else np.empty_like(vertices)
-        if kind == 1:
-            colors[:] = VIRTUAL_FACET[:3]
-        surfaces.append(ColoredTriangles(vertices, colors, piece_of))
-    return surfaces[0], surfaces[1]
+
+    def gather(original: bool) -> tuple[np.ndarray, np.ndarray]:
+        own = [(points, index) for index, kind, points in facets if kind == original]
+        vertices = np.concatenate([np.empty((0, 3)), *(points for points, _ in own)])
+        owners = [index for points, index in own for _ in points]
+        return vertices, np.array(owners, dtype=int)
+
+    (on_mesh, piece), (virtual, other) = gather(True), gather(False)
+    gray = np.tile(VIRTUAL_FACET[:3], (len(virtual), 1))
+    return (
+        ColoredTriangles(on_mesh, palette[piece], piece),
+        ColoredTriangles(virtual, gray, other),
+    )
