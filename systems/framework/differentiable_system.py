@@ -117,9 +117,9 @@ class AutoDiffPoint:
         """Returns numbers (n,) that depend on no variable."""
         return AutoDiffVector(value, np.zeros((len(value), self.num_derivatives)))
 
-    def sum_inputs(self, ports: Iterable[InputPort], size: int) -> AutoDiffVector:
-        """Returns the sum (size,) of those vector inputs that have a value."""
-        value, gradient = np.zeros(size), np.zeros((size, self.num_derivatives))
+    def sum_wrench_models(self, ports: Iterable[InputPort]) -> AutoDiffVector:
+        """Returns the sum (78,) of those wrench models that have a value."""
+        value, gradient = np.zeros(78), np.zeros((78, self.num_derivatives))
         for name in (port.get_name() for port in ports):
             if name in self:
                 value += self[name].value

@@ -265,7 +265,7 @@ class _ConstraintStep(DifferentiableSystem):
             at.state,
             at["X_WH"],
             at["V_WH"],
-            take(at.sum_inputs(self._wrenches, 78), slice(6)),
+            take(at.sum_wrench_models(self._wrenches), slice(6)),
             differentiate_poses(self._objects, at),
             differentiate_velocities(self._objects, at),
         )

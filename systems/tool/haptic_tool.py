@@ -179,7 +179,7 @@ class _ImplicitStep(DifferentiableSystem):
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the next state with its derivatives."""
-        wrench_model = at.sum_inputs(self._wrenches, 78)
+        wrench_model = at.sum_wrench_models(self._wrenches)
         return self._dynamics.step(at.state, wrench_model, self._period_s)
 
     def list_state_names(self) -> list[str]:
