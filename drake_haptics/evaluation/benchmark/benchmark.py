@@ -162,7 +162,7 @@ def _run_python(
     for done, (kind, size) in enumerate(pairs):
         progress(f"from Python: {kind}, {size} vertices", done / len(pairs))
         pair = make_pair(kind, size)
-        figures.python.append(run_python_pair(pair, 1, effort.repeats, outside))
+        figures.python.append(run_python_pair(pair, effort.repeats, outside))
 
 
 def _run_scenes(

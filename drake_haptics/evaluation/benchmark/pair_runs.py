@@ -8,13 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.pair_library import (
-    PairAnswers,
-    PairLibrary,
-    PairQuery,
-)
+from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
 from drake_haptics.evaluation.benchmark.pairs import PairShape, make_presses
-from drake_haptics.evaluation.measuring.timing import TickTimes, take_turns, typical
+from drake_haptics.evaluation.measuring.timing import TickTimes, run_in_turns
 
 # Least distance of frames with a relative error, m.
 _JUDGED_M = 1e-6
@@ -101,39 +97,22 @@ def run_pair(
     frame of a press starts cold and is left out.
     """
     queries = [library.make_query(pair) for library in libraries]
-    seconds, answers, truths = [], [], []
+    answers, truths = [], []
     for X_WA in make_presses(pair, presses):
-        times, last = _run_press(X_WA, queries, repeats)
-        truths.append(find_truth(pair, X_WA, last))
-        seconds.append(times)
-        answers.append(last)
-    return [
-        _figures(
-            pair, library, [t[i] for t in seconds], [a[i] for a in answers], truths
-        )
-        for i, library in enumerate(libraries)
-    ]
-
-
-def _run_press(
-    X_WA: np.ndarray, queries: Sequence[PairQuery], repeats: int
-) -> tuple[list[np.ndarray], list[PairAnswers]]:
-    """Returns typical times (n,) and the answers of each query."""
-    answers: list[list[PairAnswers]] = [[] for _ in queries]
-    for i in take_turns(range(len(queries)), repeats):
-        answers[i].append(queries[i].run(X_WA))
-    times = [typical(np.array([each.seconds for each in own])) for own in answers]
-    return times, [own[-1] for own in answers]
+        found = run_in_turns([query.run for query in queries], X_WA, repeats)
+        truths.append(find_truth(pair, X_WA, found))
+        answers.append(found)
+    of_libraries = zip(libraries, zip(*answers, strict=True), strict=True)
+    return [_figures(pair, library, own, truths) for library, own in of_libraries]
 
 
 def _figures(
     pair: PairShape,
     library: PairLibrary,
-    seconds: list[np.ndarray],
-    answers: list[PairAnswers],
-    truths: list[PairTruth],
+    answers: Sequence[PairAnswers],
+    truths: Sequence[PairTruth],
 ) -> PairFigures:
-    time_s = np.concatenate([s[1:] for s in seconds])
+    time_s = np.concatenate([a.seconds[1:] for a in answers])
     distance = np.concatenate([a.distance[1:] for a in answers])
     exact = np.concatenate([t.distance[1:] for t in truths])
     jumps = [

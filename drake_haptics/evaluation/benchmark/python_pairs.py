@@ -35,15 +35,12 @@ class PythonFigures:
 
 
 def run_python_pair(
-    pair: PairShape,
-    presses: int,
-    repeats: int,
-    outside: Sequence[type[OutsideLibrary]] = (),
+    pair: PairShape, repeats: int, outside: Sequence[type[OutsideLibrary]] = ()
 ) -> PythonFigures:
-    """Returns the times of a single query from Python, on all frames of the presses.
+    """Returns the times of a single query from Python, on all frames of a press.
 
-    All take a (4, 4) pose and return the distance, in turns on each press. Coal needs a
-    pose object, which is part of its query.
+    All take a (4, 4) pose and return the distance, in turns. Coal needs a pose object,
+    which is part of its query.
     """
     bodies = pair.A_vertices, pair.B_vertices
     ours = ConvexPair(ConvexPolytope(bodies[0]), ConvexPolytope(bodies[1]))
@@ -56,13 +53,10 @@ def run_python_pair(
     }
     for library in outside:
         queries[library.name] = library(*bodies).query
-    # For each press the times (repeats, queries, n).
-    seconds = [
-        np.array([[_timed(q, X_WA) for q in queries.values()] for _ in range(repeats)])
-        for X_WA in make_presses(pair, presses)
-    ]
-    all_s = np.concatenate([typical(of_press) for of_press in seconds], axis=1)
-    medians = dict(zip(queries, (1e6 * np.median(all_s, axis=1)).tolist(), strict=True))
+    (X_WA,) = make_presses(pair, 1)
+    seconds = [[_timed(q, X_WA) for q in queries.values()] for _ in range(repeats)]
+    medians_us = 1e6 * np.median(typical(np.array(seconds)), axis=1)
+    medians = dict(zip(queries, medians_us.tolist(), strict=True))
     ours_us = medians.pop("ours")
     outside_us = {library.name: medians.pop(library.name) for library in outside}
     coal_us = min(medians.values())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from itertools import groupby
 from typing import Protocol
 
@@ -25,8 +25,7 @@ from drake_haptics.evaluation.measuring.native_build import (
 from drake_haptics.evaluation.measuring.timing import (
     TickTimes,
     clock_interval,
-    take_turns,
-    typical,
+    run_in_turns,
 )
 from drake_haptics.report.page import Table
 
@@ -146,15 +145,12 @@ def run_scene(
     """
     answers: dict[str, list[SceneAnswers]] = {name: [] for name in queries}
     for X_WT in problem.motions:
-        repeated: dict[str, list[SceneAnswers]] = {name: [] for name in queries}
-        for name in take_turns(list(queries), repeats):
-            repeated[name].append(queries[name].run(X_WT))
-        for name, own in repeated.items():
-            seconds = typical(np.array([each.seconds for each in own]))
-            answers[name].append(replace(own[-1], seconds=seconds))
+        found = run_in_turns([query.run for query in queries.values()], X_WT, repeats)
+        for own, one in zip(answers.values(), found, strict=True):
+            own.append(one)
     joined = {name: _join(own) for name, own in answers.items()}
-    near = np.all([found.num_contacts > 0 for found in joined.values()], axis=0)
-    return [_figures(problem, name, found, near) for name, found in joined.items()]
+    near = np.all([all_of.num_contacts > 0 for all_of in joined.values()], axis=0)
+    return [_figures(problem, name, all_of, near) for name, all_of in joined.items()]
 
 
 def _join(answers: list[SceneAnswers]) -> SceneAnswers:

@@ -8,7 +8,7 @@ import platform
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -19,6 +19,7 @@ import numpy as np
 from drake_haptics import _core
 
 Name = TypeVar("Name")
+Answers = TypeVar("Answers", bound=Any)
 
 _TRIVIAL_CALLS = 2000
 
@@ -91,6 +92,25 @@ def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:
     for repeat in range(repeats):
         for turn in range(len(names)):
             yield names[(turn + repeat) % len(names)]
+
+
+def run_in_turns(
+    runs: Sequence[Callable[[np.ndarray], Answers]], poses: np.ndarray, repeats: int
+) -> list[Answers]:
+    """Returns the last answers of each run along a motion, with typical `seconds`.
+
+    Args:
+        runs: Functions that return a dataclass with `seconds` (n,), s.
+        poses: (n, 4, 4) poses of the motion.
+        repeats: Number of turns.
+    """
+    answers: list[list[Answers]] = [[] for _ in runs]
+    for i in take_turns(range(len(runs)), repeats):
+        answers[i].append(runs[i](poses))
+    return [
+        replace(own[-1], seconds=typical(np.array([each.seconds for each in own])))
+        for own in answers
+    ]
 
 
 @contextmanager

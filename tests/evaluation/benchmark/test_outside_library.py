@@ -81,7 +81,7 @@ def test_a_toy_stands_in_every_table(tmp_path: Path) -> None:
     figures = BenchFigures(
         machine={},
         pairs=run_pair(pair, [*with_drake_haptics.LIBRARIES, *libraries], 1, 3),
-        python=[run_python_pair(pair, 1, 3, [toy])],
+        python=[run_python_pair(pair, 3, [toy])],
         scenes=run_scene(
             scene,
             {NAME: DrakeHapticsScene(scene), toy.name: OutsideScene(scene, toy)},
