@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import (
-    Context,
-    Diagram,
-    DiagramBuilder,
-    LeafSystem,
-    State,
-)
+from pydrake.systems.framework import Context, Diagram, LeafSystem, State
 
 from drake_haptics._core import ConstraintStepper, ContactServo, FrameChange, ServoTool
 from drake_haptics.common.pose_vector import pose_to_vector
@@ -25,7 +19,7 @@ from drake_haptics.device.backend import (
     check_reading,
 )
 from drake_haptics.systems.framework.differentiable_system import (
-    export_parts,
+    BuildAround,
     get_no_witness_functions,
 )
 
@@ -85,15 +79,8 @@ class DeviceIo(Diagram):
         check_positive(period_s=period_s)
         self._backend = backend
         self._q_WB = pose_to_vector(X_WB)
-        builder = DiagramBuilder()
-        exchange = builder.AddNamedSystem(
-            "exchange", _Exchange(backend, X_WB, period_s, first_reading)
-        )
-        for port in map(exchange.get_input_port, range(exchange.num_input_ports())):
-            builder.ExportInput(port, port.get_name())
-        export_parts(builder, exchange.GetOutputPort("state"), {"X_WH": 7, "V_WH": 6})
-        builder.ExportOutput(exchange.GetOutputPort("reading"), "reading")
-        builder.BuildInto(self)
+        exchange = _Exchange(backend, X_WB, period_s, first_reading)
+        BuildAround(self, "exchange", exchange, {"X_WH": 7, "V_WH": 6})
 
     def start_contact_servo(
         self, stepper: ConstraintStepper, X_WT: RigidTransform

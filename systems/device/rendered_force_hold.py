@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues
+from pydrake.systems.framework import Context, Diagram, DiscreteValues
 
 from drake_haptics._core import AutoDiffVector, limit_coupling, limit_wrench
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
+    BuildAround,
     DifferentiableSystem,
-    export_parts,
 )
 
 # Values of the port `status`.
@@ -63,16 +63,8 @@ class RenderedForceHold(Diagram):
         super().__init__()
         check_positive(period_s=period_s)
         check_at_least(0, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm)
-        builder = DiagramBuilder()
-        sample = builder.AddNamedSystem(
-            "sample", _LimitedSample(period_s, max_force_N, max_torque_Nm)
-        )
-        for port in map(sample.get_input_port, range(2)):
-            builder.ExportInput(port, port.get_name())
-        export_parts(
-            builder, sample.get_output_port(), {"F_Ho_W_rendered": 6, "status": 1}
-        )
-        builder.BuildInto(self)
+        sample = _LimitedSample(period_s, max_force_N, max_torque_Nm)
+        BuildAround(self, "sample", sample, {"F_Ho_W_rendered": 6, "status": 1})
 
 
 _STATE_NAMES = "tau_x tau_y tau_z f_x f_y f_z status".split()

@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    Diagram,
-    DiagramBuilder,
-    LeafSystem,
-)
+from pydrake.systems.framework import BasicVector, Context, Diagram, LeafSystem
 
 from drake_haptics.common.value_checks import check_positive
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.differentiable_system import BuildAround
 
 
 class ReplayedHandle(Diagram):
@@ -66,12 +60,8 @@ class ReplayedHandle(Diagram):
             raise ValueError(
                 f"X_WH[{zero[0]}] has a quaternion of zero, which no pose has"
             )
-        builder = DiagramBuilder()
-        states = np.hstack([X_WH, V_WH])
-        motion = builder.AddNamedSystem("motion", _RecordedMotion(states, period_s))
-        builder.ExportInput(motion.get_input_port(), "F_Ho_W_rendered")
-        export_parts(builder, motion.get_output_port(), {"X_WH": 7, "V_WH": 6})
-        builder.BuildInto(self)
+        motion = _RecordedMotion(np.hstack([X_WH, V_WH]), period_s)
+        BuildAround(self, "motion", motion, {"X_WH": 7, "V_WH": 6})
 
 
 class _RecordedMotion(LeafSystem):

@@ -21,6 +21,7 @@ from pydrake.systems.framework import (
     Context,
     Context_,
     DependencyTicket,
+    Diagram,
     DiagramBuilder,
     DiscreteValues_,
     InputPort,
@@ -29,6 +30,7 @@ from pydrake.systems.framework import (
     LeafSystem_,
     OutputPort,
     PortDataType,
+    System,
     ValueProducer,
 )
 from pydrake.systems.primitives import Demultiplexer, Multiplexer
@@ -427,6 +429,29 @@ def export_parts(
     builder.Connect(vector, parts.get_input_port(0))
     for i, name in enumerate(sizes):
         builder.ExportOutput(parts.get_output_port(i), name)
+
+
+def BuildAround(
+    diagram: Diagram, name: str, system: System, sizes: Mapping[str, int]
+) -> None:
+    """Builds a diagram of one system, with the system's ports.
+
+    Args:
+        diagram: Diagram under construction.
+        name: Name of the system in it.
+        system: System, not yet in a diagram.
+        sizes: Parts of the system's first output that are ports of the diagram in its
+            place, as for `export_parts`.
+    """
+    builder = DiagramBuilder()
+    builder.AddNamedSystem(name, system)
+    for port in map(system.get_input_port, range(system.num_input_ports())):
+        builder.ExportInput(port, port.get_name())
+    first, *others = map(system.get_output_port, range(system.num_output_ports()))
+    export_parts(builder, first, sizes)
+    for port in others:
+        builder.ExportOutput(port, port.get_name())
+    builder.BuildInto(diagram)
 
 
 def import_parts(

@@ -12,11 +12,11 @@ from pydrake.common.value import AbstractValue
 from pydrake.math import RigidTransform_
 from pydrake.multibody.math import SpatialVelocity_
 from pydrake.multibody.tree import BodyIndex
-from pydrake.systems.framework import Diagram, DiagramBuilder, LeafSystem_
+from pydrake.systems.framework import Diagram, LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics.systems.framework.differentiable_system import (
-    export_parts,
+    BuildAround,
     get_no_witness_functions,
 )
 
@@ -62,17 +62,11 @@ class BodyMotions(Diagram):
                 discrete plant.
         """
         super().__init__()
-        builder = DiagramBuilder()
-        vector = builder.AddNamedSystem(
-            "vector", _BodyMotionsVector([tool, *objects.values()], largest_step_s)
-        )
-        for port in map(vector.get_input_port, range(2)):
-            builder.ExportInput(port, port.get_name())
         sizes = {"X_WT": 7, "V_WT": 6}
         for name in objects:
             sizes |= {f"X_WO_{name}": 7, f"V_WO_{name}": 6}
-        export_parts(builder, vector.get_output_port(), sizes)
-        builder.BuildInto(self)
+        vector = _BodyMotionsVector([tool, *objects.values()], largest_step_s)
+        BuildAround(self, "vector", vector, sizes)
 
 
 @TemplateSystem.define(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, Diagram, DiagramBuilder
+from pydrake.systems.framework import Context, Diagram
 
 from drake_haptics._core import (
     ConstraintStepper,
@@ -19,7 +19,7 @@ from drake_haptics._core import (
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.contact.contact_query import ContactObject, check_objects
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.differentiable_system import BuildAround
 from drake_haptics.systems.tool.constraint_step import _ConstraintStep
 
 
@@ -176,30 +176,19 @@ class ConstraintToolStep(Diagram):
                 stepper.set_object_pose(i, X_WO, np.zeros(6))
             return stepper
 
-        builder = DiagramBuilder()
-        self._step = builder.AddNamedSystem(
-            "step",
-            _ConstraintStep(
-                make_stepper,
-                objects,
-                gains,
-                X_HT,
-                X_WT,
-                period_s,
-                step_s,
-                wrench_names,
-                plant,
-                start_servo,
-            ),
+        self._step = _ConstraintStep(
+            make_stepper,
+            objects,
+            gains,
+            X_HT,
+            X_WT,
+            period_s,
+            step_s,
+            wrench_names,
+            plant,
+            start_servo,
         )
-        step = self._step
-        for port in map(step.get_input_port, range(step.num_input_ports())):
-            builder.ExportInput(port, port.get_name())
-        export_parts(builder, step.GetOutputPort("state"), {"X_WT": 7, "V_WT": 6})
-        for port in map(step.get_output_port, range(step.num_output_ports())):
-            if port.get_name() != "state":
-                builder.ExportOutput(port, port.get_name())
-        builder.BuildInto(self)
+        BuildAround(self, "step", self._step, {"X_WT": 7, "V_WT": 6})
 
     @property
     def dynamics(self) -> RigidToolDynamics:

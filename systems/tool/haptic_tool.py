@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Context, Diagram, DiagramBuilder, DiscreteValues
+from pydrake.systems.framework import Context, Diagram, DiscreteValues
 
 from drake_haptics._core import AutoDiffVector, RigidToolDynamics
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
+    BuildAround,
     DifferentiableSystem,
-    export_parts,
 )
 
 
@@ -79,14 +79,8 @@ class HapticTool(Diagram):
         check_positive(period_s=period_s)
         self._dynamics = dynamics
         self._period_s = period_s
-        builder = DiagramBuilder()
-        step = builder.AddNamedSystem(
-            "step", _ImplicitStep(dynamics, period_s, wrench_names, X_WT, enable_chain)
-        )
-        for port in map(step.get_input_port, range(step.num_input_ports())):
-            builder.ExportInput(port, port.get_name())
-        export_parts(builder, step.get_output_port(), {"X_WT": 7, "V_WT": 6})
-        builder.BuildInto(self)
+        step = _ImplicitStep(dynamics, period_s, wrench_names, X_WT, enable_chain)
+        BuildAround(self, "step", step, {"X_WT": 7, "V_WT": 6})
 
     @property
     def dynamics(self) -> RigidToolDynamics:

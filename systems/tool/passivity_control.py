@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from pydrake.systems.framework import (
-    BasicVector,
-    Context,
-    Diagram,
-    DiagramBuilder,
-    DiscreteValues,
-)
+from pydrake.systems.framework import BasicVector, Context, Diagram, DiscreteValues
 
 from drake_haptics._core import AutoDiffVector, PassivityBounds, passivity_control
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
+    BuildAround,
     DifferentiableSystem,
-    export_parts,
     take,
 )
 
@@ -98,16 +92,8 @@ class PassivityControl(Diagram):
             max_rotational_damping_Nms_per_rad,
             reserve_J,
         )
-        builder = DiagramBuilder()
-        port = builder.AddNamedSystem("port", _ObservedPort(bounds, period_s))
-        self._port = port
-        for i in range(port.num_input_ports()):
-            builder.ExportInput(
-                port.get_input_port(i), port.get_input_port(i).get_name()
-            )
-        shown = {"F_Ho_W_commanded": 6, "energy_J": 1}
-        export_parts(builder, port.get_output_port(), shown)
-        builder.BuildInto(self)
+        self._port = _ObservedPort(bounds, period_s)
+        BuildAround(self, "port", self._port, {"F_Ho_W_commanded": 6, "energy_J": 1})
 
     def begin(self, context: Context) -> None:
         """Begins with a balance of zero at the handle's present pose.
