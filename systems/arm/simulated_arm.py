@@ -23,7 +23,7 @@ from drake_haptics.systems.arm.hand_impedance import (
     make_held_arm,
 )
 from drake_haptics.systems.arm.hand_path import HandPath
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.vector_ports import export_parts
 
 _MAX_ITERATIONS = 100
 _LARGEST_STEP_RAD = 0.3

@@ -19,9 +19,9 @@ from drake_haptics.device.backend import (
     check_reading,
 )
 from drake_haptics.systems.framework.differentiable_system import (
-    BuildAround,
     get_no_witness_functions,
 )
+from drake_haptics.systems.framework.vector_ports import BuildAround
 
 
 class DeviceIo(Diagram):

@@ -9,9 +9,9 @@ from drake_haptics._core import AutoDiffVector, limit_coupling, limit_wrench
 from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
-    BuildAround,
     DifferentiableSystem,
 )
+from drake_haptics.systems.framework.vector_ports import BuildAround
 
 # Values of the port `status`.
 SHOWN_AS_ASKED = 0.0

@@ -6,7 +6,7 @@ import numpy as np
 from pydrake.systems.framework import BasicVector, Context, Diagram, LeafSystem
 
 from drake_haptics.common.value_checks import check_positive
-from drake_haptics.systems.framework.differentiable_system import BuildAround
+from drake_haptics.systems.framework.vector_ports import BuildAround
 
 
 class ReplayedHandle(Diagram):

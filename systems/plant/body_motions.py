@@ -16,9 +16,9 @@ from pydrake.systems.framework import Diagram, LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics.systems.framework.differentiable_system import (
-    BuildAround,
     get_no_witness_functions,
 )
+from drake_haptics.systems.framework.vector_ports import BuildAround
 
 
 class BodyMotions(Diagram):

@@ -19,7 +19,7 @@ from drake_haptics._core import (
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.contact.contact_query import ContactObject, check_objects
-from drake_haptics.systems.framework.differentiable_system import BuildAround
+from drake_haptics.systems.framework.vector_ports import BuildAround
 from drake_haptics.systems.tool.constraint_step import _ConstraintStep
 
 

@@ -14,9 +14,9 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
-    BuildAround,
     DifferentiableSystem,
 )
+from drake_haptics.systems.framework.vector_ports import BuildAround
 
 
 class HapticTool(Diagram):

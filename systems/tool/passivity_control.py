@@ -8,10 +8,10 @@ from pydrake.systems.framework import BasicVector, Context, Diagram, DiscreteVal
 from drake_haptics._core import AutoDiffVector, PassivityBounds, passivity_control
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
-    BuildAround,
     DifferentiableSystem,
     take,
 )
+from drake_haptics.systems.framework.vector_ports import BuildAround
 
 _AT_ORIGIN = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 

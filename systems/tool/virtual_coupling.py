@@ -12,9 +12,8 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
-    export_parts,
-    import_parts,
 )
+from drake_haptics.systems.framework.vector_ports import export_parts, import_parts
 
 
 class VirtualCoupling(Diagram):

@@ -11,7 +11,7 @@ from twin_rig import PERIOD, X_WH, make_arm, make_simulator
 from drake_haptics._core import CouplingGains
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 from drake_haptics.systems.device.haptic_device import HapticDevice
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.vector_ports import export_parts
 from drake_haptics.systems.tool.passivity_control import PassivityControl
 
 MASS, DAMPING, SPEED = 0.1, 0.5, 0.1

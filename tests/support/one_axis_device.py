@@ -6,7 +6,7 @@ import numpy as np
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import AffineSystem
 
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.vector_ports import export_parts
 
 
 def make_one_axis_device(mass_kg: float, damping_Ns_per_m: float) -> Diagram:

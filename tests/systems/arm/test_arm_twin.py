@@ -36,7 +36,7 @@ from drake_haptics.scene.schema import (
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.arm.hand_impedance import HandImpedance
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant, solve_arm_positions
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.vector_ports import export_parts
 
 ALWAYS = {"arm", "hand_impedance", "parts"}
 PARTS = {

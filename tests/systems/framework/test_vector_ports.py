@@ -4,10 +4,7 @@ import numpy as np
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource, PassThrough
 
-from drake_haptics.systems.framework.differentiable_system import (
-    export_parts,
-    import_parts,
-)
+from drake_haptics.systems.framework.vector_ports import export_parts, import_parts
 
 
 def test_parts_come_in_order_with_their_names_and_sizes():

@@ -26,7 +26,7 @@ from drake_haptics.evaluation.measuring.timing import clock_interval
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.device.haptic_device import HapticDevice
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.vector_ports import export_parts
 
 # Share of a tick by which rows of the recording begin early, so that round-off never
 # selects the previous row.
