@@ -22,6 +22,7 @@ from drake_haptics.common.disk_cache import load_entry, replace_file, store_entr
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.topology import unite_surfaces
 from drake_haptics.geometry.mesh.units import unit_of_name
 
 # Sizes in a binary STL: header with the number of triangles, and a triangle.
@@ -216,9 +217,7 @@ def _describe_missing_triangles(path: Path) -> str:
 
 
 def _merge_scene(path: Path, scene: Any) -> RawMesh:
-    vertices: list[np.ndarray] = []
-    triangles: list[np.ndarray] = []
-    start = 0
+    parts: list[tuple[np.ndarray, np.ndarray]] = []
     for node in scene.graph.nodes_geometry:
         X_WG, name = scene.graph[node]
         geometry = scene.geometry[name]
@@ -238,14 +237,7 @@ def _merge_scene(path: Path, scene: Any) -> RawMesh:
                 f"only {count(len(p_GV), 'vertex', 'vertices')}; the file is damaged:"
                 " export it again"
             )
-        vertices.append(p_GV)
-        triangles.append(F + start)
-        start += len(p_GV)
-    if not triangles:
+        parts.append((p_GV, F))
+    if not parts:
         raise MeshError(f"{path}: {_describe_missing_triangles(path)}")
-    return RawMesh(
-        np.concatenate(vertices),
-        np.concatenate(triangles),
-        len(triangles),
-        unit_of_name(scene.units),
-    )
+    return RawMesh(*unite_surfaces(parts), len(parts), unit_of_name(scene.units))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +55,16 @@ def find_edges(triangles: IntArray) -> Edges:
         pairs=np.stack([h0 // 3, h1 // 3], axis=1),
         pair_opposed=forward[h0] != forward[h1],
     )
+
+
+def unite_surfaces(
+    parts: Sequence[tuple[FloatArray, IntArray]],
+) -> tuple[FloatArray, IntArray]:
+    """Returns vertices (n, 3) and triangles (m, 3) of one or more surfaces as one."""
+    vertices, triangles = zip(*parts, strict=True)
+    first = np.cumsum([0, *map(len, vertices[:-1])])
+    united = [F + start for F, start in zip(triangles, first, strict=True)]
+    return np.concatenate(vertices), np.concatenate(united)
 
 
 def connected_labels(num_nodes: int, links: IntArray) -> IntArray:

@@ -40,6 +40,7 @@ from drake_haptics.geometry.mesh.round_shapes import (
     make_cylinder_corners,
     make_ellipsoid_corners,
 )
+from drake_haptics.geometry.mesh.topology import unite_surfaces
 
 _ROLE_NAMES = {Role.kProximity: "proximity", Role.kIllustration: "illustration"}
 # glTF's y axis is up; Drake rotates it to z.
@@ -190,19 +191,13 @@ def _make_convex(corners: np.ndarray) -> _core.ConvexPieces:
 
 def _unite(parts: list[_core.ConvexPieces]) -> _core.ConvexPieces:
     """Returns all pieces as those of one object."""
-    first_vertex = np.cumsum([0, *(len(part.vertices) for part in parts)])
-    first_piece = np.cumsum([0, *(len(part.pieces) for part in parts)])
+    vertices, triangles = unite_surfaces(
+        [(part.vertices, part.triangles) for part in parts]
+    )
+    first = np.cumsum([0, *(len(part.pieces) for part in parts)])
+    pieces = [part.piece_of_triangle + k for part, k in zip(parts, first, strict=False)]
     return _core.assemble_surface_pieces(
-        np.concatenate([part.vertices for part in parts]),
-        np.concatenate(
-            [part.triangles + k for part, k in zip(parts, first_vertex, strict=False)]
-        ).astype(np.int32),
-        np.concatenate(
-            [
-                part.piece_of_triangle + k
-                for part, k in zip(parts, first_piece, strict=False)
-            ]
-        ).astype(np.int32),
+        vertices, triangles.astype(np.int32), np.concatenate(pieces).astype(np.int32)
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import numpy as np
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
 from pydrake.multibody.tree import BodyIndex
@@ -14,6 +13,7 @@ from pydrake.systems.framework import DiagramBuilder
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.topology import unite_surfaces
 from drake_haptics.geometry.mesh.units import meters_per_unit
 from drake_haptics.geometry.parsing.body_shapes import (
     decompose_body,
@@ -68,7 +68,7 @@ def load_model_mesh(
     plant.Finalize()
     context = plant.CreateDefaultContext()
     inspector = scene_graph.model_inspector()
-    vertices, triangles, count = [], [], 0
+    parts = []
     for body in map(plant.get_body, map(BodyIndex, range(plant.num_bodies()))):
         if not find_body_geometries(plant, inspector, body):
             continue
@@ -77,11 +77,9 @@ def load_model_mesh(
         except ValueError as error:
             raise MeshError(f"{path}: {error}") from error
         X_WB = plant.EvalBodyPoseInWorld(context, body).GetAsMatrix4()
-        vertices.append(part.vertices @ X_WB[:3, :3].T + X_WB[:3, 3])
-        triangles.append(part.triangles + count)
-        count += len(part.vertices)
-    if not vertices:
+        p_WV = part.vertices @ X_WB[:3, :3].T + X_WB[:3, 3]
+        parts.append((p_WV, part.triangles))
+    if not parts:
         raise MeshError(f"{path}: has no collision shape that could be touched")
-    return Mesh.from_arrays(
-        scale * np.concatenate(vertices), np.concatenate(triangles), name=path.name
-    )
+    vertices, triangles = unite_surfaces(parts)
+    return Mesh.from_arrays(scale * vertices, triangles, name=path.name)
