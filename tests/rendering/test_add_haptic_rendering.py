@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 import trimesh
-from plant_scenes import PLANTS, G, PlantScene
+from plant_scenes import PLANTS, G, PlantScene, over_a_slab
 from pydrake.common.value import Value
 from pydrake.geometry import Box, Cylinder, Mesh, Role, SceneGraph, Sphere
 from pydrake.math import RigidTransform, RollPitchYaw
@@ -34,28 +34,19 @@ REST = HALF + SOFT.tolerance_m - MASS * G / K
 
 
 def render(scene, tool="tool", **options):
-    return AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        tool,
-        **{"contact": SOFT, **options},
-    )
+    return scene.render(tool, **{"contact": SOFT, **options})
 
 
-def over_a_slab(config=PLANTS["sampled"], shape=CUBE, **options):
+def make_scene(config=PLANTS["sampled"], shape=CUBE, **options):
     """Returns a finalized scene of one body above a slab, and its rendering."""
-    scene = PlantScene(config)
-    scene.add("tool", shape, mass=MASS)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(shape, config=config)
     return scene, render(scene, **options)
 
 
 @pytest.mark.parametrize("config", PLANTS.values(), ids=PLANTS)
 @pytest.mark.parametrize("shape", [CUBE, Sphere(HALF)], ids=["cube", "ball"])
 def test_a_body_comes_to_rest_where_its_weight_is_borne(config, shape):
-    scene, rendering = over_a_slab(config, shape, chord_error_m=2e-5)
+    scene, rendering = make_scene(config, shape, chord_error_m=2e-5)
     scene.start(tool=RigidTransform([0.1, 0.2, REST + 2e-4]))
     scene.simulator.AdvanceTo(1.5)
     p = scene.pose("tool").translation()
@@ -68,7 +59,7 @@ def test_a_body_comes_to_rest_where_its_weight_is_borne(config, shape):
 @pytest.mark.parametrize("config", PLANTS.values(), ids=PLANTS)
 def test_there_is_no_sample_of_delay(config):
     """The force is that of the state now, also before the first step."""
-    scene, rendering = over_a_slab(config)
+    scene, rendering = make_scene(config)
     scene.start(tool=RigidTransform([0, 0, REST - 1e-4]))
     F = scene.read(rendering, "F_To_W")
     assert F[5] == pytest.approx(MASS * G + 1e-4 * K, rel=1e-9)
@@ -161,11 +152,8 @@ def push(scene, body, f):
 
 
 def test_a_users_own_force_acts_beside_it():
-    scene = PlantScene()
-    tool = scene.add("tool", CUBE, mass=MASS)
-    scene.add_slab()
-    scene.finalize()
-    push(scene, tool, [0.0, 0.0, 0.5 * MASS * G])
+    scene = over_a_slab(CUBE)
+    push(scene, scene.plant.GetBodyByName("tool"), [0.0, 0.0, 0.5 * MASS * G])
     render(scene)
     scene.start(tool=RigidTransform([0, 0, REST]))
     scene.simulator.AdvanceTo(1.5)
@@ -178,11 +166,7 @@ def count_own_contacts(scene):
 
 
 def test_drakes_own_contact_does_not_act_a_second_time():
-    scene = PlantScene()
-    scene.add("tool", CUBE)
-    scene.add("brick", CUBE)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE, "tool", "brick")
     with pytest.warns(SceneWarning, match="between 'tool' and 'brick'"):
         render(scene, environment=["slab"])
     deep = RigidTransform([0.0, 0.0, 0.5 * HALF])
@@ -191,20 +175,14 @@ def test_drakes_own_contact_does_not_act_a_second_time():
     scene.simulator.AdvanceTo(1e-3)
     # Only the brick's contact with the slab is Drake's.
     assert count_own_contacts(scene) == 1
-    scene.plant.SetFloatingBaseBodyPoseInWorldFrame(
-        scene.context, scene.plant.GetBodyByName("brick"), deep
-    )
+    scene.place("brick", deep)
     scene.simulator.AdvanceTo(2e-3)
     # What is not rendered is still touched as Drake does.
     assert count_own_contacts(scene) == 2
 
 
 def test_of_two_calls_for_one_tool_the_last_knows_what_is_left_to_drake():
-    scene = PlantScene()
-    scene.add("tool", CUBE)
-    scene.add("brick", CUBE)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE, "tool", "brick")
     with pytest.warns(SceneWarning) as caught:
         render(scene, environment=["slab"], name="on_slab")
     (warning,) = caught
@@ -222,10 +200,7 @@ def test_of_two_calls_for_one_tool_the_last_knows_what_is_left_to_drake():
 
 
 def test_without_rendering_drakes_contact_would_act():
-    scene = PlantScene()
-    scene.add("tool", CUBE)
-    scene.add_slab()
-    scene.finalize().start(tool=RigidTransform([0.0, 0.0, 0.5 * HALF]))
+    scene = over_a_slab(CUBE).start(tool=RigidTransform([0.0, 0.0, 0.5 * HALF]))
     scene.simulator.AdvanceTo(1e-3)
     assert count_own_contacts(scene) == 1
 
@@ -233,15 +208,11 @@ def test_without_rendering_drakes_contact_would_act():
 def test_nothing_is_warned_of_where_nothing_is_wrong():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        over_a_slab()
+        make_scene()
 
 
 def test_bodies_at_rest_have_no_ports_and_moving_ones_do():
-    scene = PlantScene()
-    scene.add("tool", CUBE)
-    scene.add("cart", CUBE)
-    scene.add_slab()
-    rendering = render(scene.finalize())
+    rendering = render(over_a_slab(CUBE, "tool", "cart"))
     inputs = map(rendering.get_input_port, range(rendering.num_input_ports()))
     assert [port.get_name() for port in inputs] == [
         "body_poses",
@@ -254,7 +225,7 @@ def test_bodies_at_rest_have_no_ports_and_moving_ones_do():
 
 
 def test_a_material_takes_the_place_of_the_contacts_gains():
-    scene, rendering = over_a_slab(materials={"slab": Material(stiffness_N_per_m=5e3)})
+    scene, rendering = make_scene(materials={"slab": Material(stiffness_N_per_m=5e3)})
     scene.start(tool=RigidTransform([0, 0, HALF]))
     F = scene.read(rendering, "F_To_W")
     assert F[5] == pytest.approx(5e3 * SOFT.tolerance_m)
@@ -294,11 +265,8 @@ def test_the_stiffness_that_is_warned_of_is_the_one_that_fails(factor):
     scene.start(tool=RigidTransform([0, 0, HALF + stiff.tolerance_m]))
     gap = scene.read(rendering, "contacts").distance[0] - stiff.tolerance_m
     sag = MASS * G / stiff.stiffness_N_per_m
-    scene.plant.SetFloatingBaseBodyPoseInWorldFrame(
-        scene.context,
-        tool,
-        RigidTransform([0, 0, HALF + stiff.tolerance_m - gap - 1.01 * sag]),
-    )
+    z = HALF + stiff.tolerance_m - gap - 1.01 * sag
+    scene.place("tool", RigidTransform([0, 0, z]))
     scene.simulator.AdvanceTo(0.05)
     weight = scene.read(rendering, "F_To_W")[5] / (MASS * G)
     assert (abs(weight - 1.0) < 0.1) == (factor < 1)
@@ -307,24 +275,20 @@ def test_the_stiffness_that_is_warned_of_is_the_one_that_fails(factor):
 def test_a_stiffness_that_a_discrete_plant_does_not_hold_is_warned_of():
     stiff = ContactParameters(stiffness_N_per_m=1e6)
     with pytest.warns(SceneWarning, match=r"contact of 'tool' with 'slab'.*time_step"):
-        over_a_slab(contact=stiff)
+        make_scene(contact=stiff)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        over_a_slab(PLANTS["continuous"], contact=stiff)
+        make_scene(PLANTS["continuous"], contact=stiff)
 
 
 def test_a_coupling_that_a_discrete_plant_does_not_hold_is_warned_of():
     stiff = CouplingParameters(rotational_damping_Nms_per_rad=0.2)
     with pytest.warns(SceneWarning, match=r"coupling of 'tool': .* N·m/rad"):
-        over_a_slab(coupling=stiff)
+        make_scene(coupling=stiff)
 
 
 def test_two_tools_may_meet_the_same_slab():
-    scene = PlantScene()
-    for name in ("left", "right"):
-        scene.add(name, CUBE, mass=MASS)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE, "left", "right")
     with pytest.warns(SceneWarning, match="'left' and 'right'"):
         render(scene, "left", environment=["slab"], name="of_left")
     with pytest.warns(SceneWarning, match="'right' and 'left'"):
@@ -362,17 +326,13 @@ def test_a_plant_without_a_scene_graph_is_refused():
 
 
 def test_a_name_that_is_taken_is_refused():
-    scene, _ = over_a_slab()
+    scene, _ = make_scene()
     with pytest.raises(ValueError, match=r"name: .* 'haptic_rendering' already.*name="):
         render(scene)
 
 
 def test_contact_of_two_bodies_counts_once():
-    scene = PlantScene(PLANTS["sampled"])
-    scene.add("tool", CUBE, mass=MASS)
-    scene.add("other", CUBE, mass=MASS)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE, "tool", "other")
     render(scene)
     for tool, environment in [("tool", ["slab"]), ("other", ["slab", "tool"])]:
         with pytest.raises(ValueError, match="'haptic_rendering' already"):
@@ -383,12 +343,12 @@ def test_contact_of_two_bodies_counts_once():
 
 def test_one_name_is_no_list_of_bodies():
     with pytest.raises(ValueError, match=r"environment: is a list .* \['slab'\]"):
-        over_a_slab(environment="slab")
+        make_scene(environment="slab")
 
 
 def test_a_period_must_be_positive():
     with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
-        over_a_slab(period_s=0.0)
+        make_scene(period_s=0.0)
 
 
 def test_materials_that_mean_nothing_are_refused():
@@ -406,7 +366,7 @@ def test_materials_that_mean_nothing_are_refused():
         ),
     ]:
         with pytest.raises(ValueError, match=message):
-            over_a_slab(materials=materials, effects=effects)
+            make_scene(materials=materials, effects=effects)
 
 
 @pytest.mark.parametrize(
@@ -434,14 +394,11 @@ def test_materials_that_mean_nothing_are_refused():
 )
 def test_a_value_out_of_its_range_is_refused_by_the_name_it_was_given(options, message):
     with pytest.raises(ValueError, match=message):
-        over_a_slab(**options)
+        make_scene(**options)
 
 
 def test_what_was_refused_leaves_the_builder_as_it_was():
-    scene = PlantScene()
-    scene.add("tool", CUBE)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE)
     with pytest.raises(ValueError, match="tolerance"):
         render(scene, contact=ContactParameters(tolerance_m=-1.0))
     assert len(scene.builder.GetSystems()) == 2

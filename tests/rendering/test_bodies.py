@@ -12,7 +12,7 @@ from pydrake.multibody.tree import (
     SpatialInertia,
 )
 
-from drake_haptics import AddHapticRendering, ContactParameters, Material
+from drake_haptics import ContactParameters, Material
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.geometry.parsing.body_shapes import find_body_geometries
 from drake_haptics.rendering.bodies import (
@@ -127,11 +127,7 @@ def test_equal_names_are_told_apart_by_their_models(scoped, expected):
     for body, gap_m, along in zip(bodies, gaps_m, directions, strict=False):
         X_WB = RigidTransform((2 * BALL.radius() + gap_m) * np.array(along))
         scene.plant.SetDefaultFloatingBaseBodyPose(body, X_WB)
-    rendering = AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        "tool",
+    rendering = scene.render(
         environment=bodies,
         contact=ContactParameters(tolerance_m=5e-3),
         materials={expected[0]: Material(stiffness_N_per_m=1.0)},

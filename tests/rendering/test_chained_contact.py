@@ -170,10 +170,7 @@ def test_a_deep_contact_is_warned_of_again_after_it_ended(monkeypatch, make) -> 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             for X_WT in (deep, touching, deep, away, deep):
-                tool = scene.plant.GetBodyByName("tool")
-                scene.plant.SetFloatingBaseBodyPoseInWorldFrame(
-                    scene.context, tool, X_WT
-                )
+                scene.place("tool", X_WT)
                 scene.simulator.Initialize()
                 scene.simulator.AdvanceTo(scene.root.get_time() + 1e-3)
                 scene.read(rendering, "clusters")

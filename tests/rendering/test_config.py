@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from plant_scenes import PLANTS, PlantScene
+from plant_scenes import over_a_slab
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform
 
 from drake_haptics import (
-    AddHapticRendering,
     ApplyHapticRenderingConfig,
     ContactParameters,
     Effects,
@@ -19,6 +18,7 @@ from drake_haptics import (
 )
 from drake_haptics.scene.validation import SceneWarning
 
+CUBE = Box(0.04, 0.04, 0.04)
 YAML = """
 tool_body: tool
 environment: [slab]
@@ -38,15 +38,6 @@ ARGUMENTS = {
     "materials": {"slab": Material(stiffness_N_per_m=2e3)},
     "effects": Effects(friction=FrictionParameters(coefficient=0.4)),
 }
-
-
-def make_scene():
-    """Returns a finalized plant with a cube above a slab."""
-    scene = PlantScene(PLANTS["sampled"])
-    scene.add("tool", Box(0.04, 0.04, 0.04), mass=0.1)
-    scene.add_slab()
-    scene.finalize()
-    return scene
 
 
 def load(folder, text=YAML):
@@ -71,18 +62,12 @@ def test_a_file_gives_the_values_that_stand_in_it_and_defaults(tmp_path):
 
 
 def test_it_adds_what_the_arguments_add(tmp_path):
-    by_file, by_arguments = make_scene(), make_scene()
+    by_file, by_arguments = over_a_slab(CUBE), over_a_slab(CUBE)
     rendering = ApplyHapticRenderingConfig(
         load(tmp_path), by_file.builder, by_file.plant, by_file.scene_graph
     )
     assert rendering.get_name() == "config"
-    same = AddHapticRendering(
-        by_arguments.builder,
-        by_arguments.plant,
-        by_arguments.scene_graph,
-        "tool",
-        **ARGUMENTS,
-    )
+    same = by_arguments.render(**ARGUMENTS)
     F = read_force(by_file, rendering)
     assert F[5] > 0.1
     np.testing.assert_array_equal(F, read_force(by_arguments, same))
@@ -113,7 +98,7 @@ def test_a_wrong_key_is_named(tmp_path, old, new, message):
     ],
 )
 def test_a_wrong_value_is_named_in_code_too(wrong, error, message):
-    scene = make_scene()
+    scene = over_a_slab(CUBE)
     with pytest.raises(error, match=message):
         ApplyHapticRenderingConfig(
             HapticRenderingConfig(tool_body="tool", **wrong),
@@ -124,7 +109,7 @@ def test_a_wrong_value_is_named_in_code_too(wrong, error, message):
 
 
 def test_a_warning_names_the_line_of_the_caller():
-    scene = make_scene()
+    scene = over_a_slab(CUBE)
     stiff = ContactParameters(stiffness_N_per_m=1e9)
     with pytest.warns(SceneWarning, match="time_step") as caught:
         ApplyHapticRenderingConfig(

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from plant_scenes import PLANTS, G, PlantScene
+from plant_scenes import PLANTS, G, PlantScene, over_a_slab
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform
 from pydrake.multibody.tree import SpatialInertia
@@ -17,7 +17,6 @@ from pydrake.systems.analysis import (
     SimulatorConfig,
 )
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import ContactParameters
 
 TOLERANCE_M = 2e-3
@@ -47,10 +46,7 @@ def throw_at_a_plate(
     side = 2.0 * HALF_CUBE_M
     scene.add("cube", Box(side, side, side), side=side)
     scene.finalize(gravity=0.0)
-    rendering = AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
+    rendering = scene.render(
         "cube",
         contact=ContactParameters(stiffness_N_per_m=2e4, tolerance_m=TOLERANCE_M),
         period_s=period_s,
@@ -103,13 +99,9 @@ def test_a_period_that_is_far_too_long_goes_through_the_plate():
 def test_cenic_holds_a_cube_in_steps_far_above_the_explicit_bound(stiffness_N_per_m):
     """By 2 √(m/K), 1 ms and 0.1 ms; it comes to rest where its weight is borne."""
     mass, period_s, side = 0.1, 1e-2, 2.0 * HALF_CUBE_M
-    scene = PlantScene(PLANTS["continuous"])
-    scene.add_slab()
-    scene.add("cube", Box(side, side, side), mass=mass, side=side)
-    AddHapticRendering(
-        scene.builder,
-        scene.finalize().plant,
-        scene.scene_graph,
+    cube = Box(side, side, side)
+    scene = over_a_slab(cube, "cube", config=PLANTS["continuous"], mass=mass, side=side)
+    scene.render(
         "cube",
         contact=ContactParameters(
             stiffness_N_per_m=stiffness_N_per_m,

@@ -12,7 +12,6 @@ from pydrake.multibody.tree import PrismaticJoint
 from pydrake.systems.framework import InputPortSelection, OutputPortSelection
 from pydrake.systems.primitives import Linearize
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import BrakingParameters, ContactParameters, Effects
 
 CONTACT = ContactParameters(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
@@ -27,14 +26,7 @@ def make_scene(effects):
     scene.add("cart", Sphere(0.03), mass=0.2)
     scene.add_slab()
     scene.finalize()
-    rendering = AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        "tool",
-        contact=CONTACT,
-        effects=effects,
-    )
+    rendering = scene.render(contact=CONTACT, effects=effects)
     turned = RollPitchYaw(0.5, 0.4, 0.2)
     corners = 0.02 * np.array(list(product((-1, 1), repeat=3)))
     lowest = (corners @ turned.ToRotationMatrix().matrix().T)[:, 2].min()
@@ -110,13 +102,7 @@ def add_slider(config):
         )
     )
     scene.finalize()
-    AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        "tool",
-        contact=ContactParameters(stiffness_N_per_m=K, damping_Ns_per_m=0.0),
-    )
+    scene.render(contact=ContactParameters(stiffness_N_per_m=K, damping_Ns_per_m=0.0))
     scene.start()
     rest = 0.02 + 2e-3 - MASS * G / K
     scene.plant.SetPositions(scene.context, [rest])

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from cube_scene import CONTACT, CUBE, HALF, MASS, G, make_scene
 from diagram_parts import names, sources
-from plant_scenes import PLANTS, PlantScene
+from plant_scenes import PLANTS, over_a_slab
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.primitives import ConstantVectorSource
 from slider_device import make_device
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.scene.schema import (
@@ -172,21 +171,10 @@ def test_friction_stops_a_body_that_slides(config):
 @pytest.mark.filterwarnings("ignore:Drake's own contact")
 def test_one_tool_may_meet_bodies_in_two_ways():
     """With braking what stands still, without it what moves."""
-    scene = PlantScene()
-    scene.add("tool", CUBE, mass=MASS)
-    scene.add("cart", CUBE)
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE, "tool", "cart")
     braked, plain = (
-        AddHapticRendering(
-            scene.builder,
-            scene.plant,
-            scene.scene_graph,
-            "tool",
-            environment=[body],
-            contact=CONTACT,
-            effects=effects,
-            name=f"on_{body}",
+        scene.render(
+            environment=[body], contact=CONTACT, effects=effects, name=f"on_{body}"
         )
         for body, effects in [
             ("slab", Effects(braking=BrakingParameters())),
@@ -197,9 +185,7 @@ def test_one_tool_may_meet_bodies_in_two_ways():
     scene.start(
         tool=RigidTransform([0, 0, REST]), cart=RigidTransform([2 * HALF + gap, 0, 0.5])
     )
-    near = RigidTransform([2 * HALF + gap, 0, REST])
-    cart = scene.plant.GetBodyByName("cart")
-    scene.plant.SetFloatingBaseBodyPoseInWorldFrame(scene.context, cart, near)
+    scene.place("cart", RigidTransform([2 * HALF + gap, 0, REST]))
     scene.simulator.AdvanceTo(1e-3)
     assert scene.read(plain, "F_To_W")[3] < -0.9
     assert scene.velocity("cart")[3] == pytest.approx(1.0 / 0.1 * 1e-3, rel=1e-6)
@@ -270,17 +256,8 @@ def test_bodies_that_brake_each_other_keep_their_momentum():
 def test_braking_takes_the_speed_that_it_says():
     effects = Effects(braking=BrakingParameters(damping_Ns_per_m=20.0, distance_m=4e-3))
     contact = ContactParameters(tolerance_m=0.0, damping_Ns_per_m=0.0)
-    scene = PlantScene(PLANTS["continuous"])
-    scene.add("tool", CUBE, mass=MASS)
-    scene.add_slab()
-    scene.finalize(gravity=0.0)
-    AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        "tool",
-        contact=contact,
-        effects=effects,
+    scene, _ = make_scene(
+        config=PLANTS["continuous"], gravity=0.0, contact=contact, effects=effects
     )
     scene.start(tool=RigidTransform([0, 0, HALF + 5e-3]))
     scene.plant.SetVelocities(scene.context, [0, 0, 0, 0, 0, -1.0])

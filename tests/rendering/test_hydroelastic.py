@@ -15,7 +15,6 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.plant import ContactModel
 from pydrake.multibody.tree import SpatialInertia
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import ContactParameters
 
 MASS, SIDE_M = 0.1, 0.04
@@ -46,9 +45,7 @@ def test_a_tool_stands_on_a_body_that_lies_on_hydroelastic_contact(plant):
     tool = scene.add("tool", mass=MASS, side=SIDE_M)
     scene.plant.RegisterCollisionGeometry(tool, RigidTransform(), cube, "tool", hard)
     scene.finalize()
-    rendering = AddHapticRendering(
-        scene.builder, scene.plant, scene.scene_graph, "tool", contact=CONTACT
-    )
+    rendering = scene.render(contact=CONTACT)
     above_m = SIDE_M + CONTACT.tolerance_m - MASS * G / CONTACT.stiffness_N_per_m
     scene.start(
         cushion=RigidTransform([0.0, 0.0, SIDE_M / 2.0]),

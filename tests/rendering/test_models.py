@@ -10,7 +10,6 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.visualization import AddDefaultVisualization
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import ContactParameters
 
 K = 2e3
@@ -51,13 +50,7 @@ TABLE_TOP = 0.736 + 0.057 / 2
 
 
 def render(scene, tool, **options):
-    return AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        tool,
-        **{"contact": CONTACT, **options},
-    )
+    return scene.render(tool, **{"contact": CONTACT, **options})
 
 
 def weld(scene, body, X_WB):

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from meshcat_page import MeshcatPage
-from plant_scenes import G, PlantScene
+from plant_scenes import G, PlantScene, over_a_slab
 from pydrake.geometry import Box, Meshcat
 from pydrake.math import RigidTransform
 from pydrake.visualization import ApplyVisualizationConfig, VisualizationConfig
 
-from drake_haptics import AddAppliedSpatialForce, AddHapticRendering
+from drake_haptics import AddAppliedSpatialForce
 from drake_haptics.scene.schema import ContactParameters
 
 pytestmark = pytest.mark.skipif(
@@ -34,16 +34,13 @@ def add_mouse(scene: PlantScene, meshcat: Meshcat) -> None:
 @pytest.mark.parametrize("first", ["mouse", "rendering"])
 def test_the_mouse_pulls_beside_contact(first):
     """Its force is mass times stiffness times the pull; contact bears the weight."""
-    scene, meshcat = PlantScene(), Meshcat()
-    scene.add_slab()
-    scene.add("cube", Box(SIDE_M, SIDE_M, SIDE_M), mass=MASS, side=SIDE_M)
-    scene.finalize()
+    cube = Box(SIDE_M, SIDE_M, SIDE_M)
+    scene = over_a_slab(cube, "cube", mass=MASS, side=SIDE_M)
+    meshcat = Meshcat()
     plant, builder = scene.plant, scene.builder
     if first == "mouse":
         add_mouse(scene, meshcat)
-    rendering = AddHapticRendering(
-        builder, plant, scene.scene_graph, "cube", contact=CONTACT
-    )
+    rendering = scene.render("cube", contact=CONTACT)
     if first == "rendering":
         # As docs/compose.md has it.
         forces = rendering.GetOutputPort("applied_spatial_force")

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from plant_scenes import PLANTS, PlantScene
+from plant_scenes import PLANTS, PlantScene, over_a_slab
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import ContactParameters, Effects, FrictionParameters
 
 X_WCUBE = RigidTransform(RollPitchYaw(0.3, 0.2, 0.1), [0.0, 0.0, 0.05])
@@ -18,14 +17,8 @@ X_WCUBE = RigidTransform(RollPitchYaw(0.3, 0.2, 0.1), [0.0, 0.0, 0.05])
 
 def make_scene(config: str) -> PlantScene:
     """A cube above a slab, with friction."""
-    scene = PlantScene(PLANTS[config])
-    scene.add_slab()
-    scene.add("cube", Box(0.04, 0.04, 0.04))
-    scene.finalize()
-    AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
+    scene = over_a_slab(Box(0.04, 0.04, 0.04), "cube", config=PLANTS[config])
+    scene.render(
         "cube",
         contact=ContactParameters(stiffness_N_per_m=2e3, damping_Ns_per_m=5.0),
         effects=Effects(friction=FrictionParameters()),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from plant_scenes import PLANTS, G, PlantScene
+from plant_scenes import PLANTS, G, PlantScene, over_a_slab
 from press_tools import MODELS
 from pydrake.geometry import Box, Mesh, Sphere
 from pydrake.math import RigidTransform, RollPitchYaw
@@ -13,7 +13,6 @@ from pydrake.systems.analysis import InitializeParams, Simulator
 from pydrake.systems.primitives import ConstantVectorSource, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.analysis import find_equilibrium
 from drake_haptics.bounds.explicit_step import calc_explicit_stiffness
 from drake_haptics.common.errors import SceneError
@@ -37,14 +36,13 @@ plants = pytest.mark.parametrize("config", PLANTS.values(), ids=PLANTS)
 
 
 def render(scene, *, contact=CONSTRAINT, **options):
-    return AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        "tool",
-        contact=contact,
-        **options,
-    )
+    return scene.render(contact=contact, **options)
+
+
+def rest_on_a_slab(config=PLANTS["sampled"], **options):
+    """Returns a finalized scene of a cube over a slab, and its rendering."""
+    scene = over_a_slab(CUBE, config=config, mass=MASS, side=2 * HALF)
+    return scene, render(scene, **options)
 
 
 def add_fixed(scene, name, shape, X_WG=None):
@@ -68,10 +66,7 @@ def proxy_z(scene, rendering):
 
 @plants
 def test_a_cube_rests_on_its_skin_and_sinks_by_its_weight(config):
-    scene = PlantScene(config)
-    scene.add_slab()
-    scene.add("tool", CUBE, mass=MASS, side=2 * HALF)
-    rendering = render(scene.finalize())
+    scene, rendering = rest_on_a_slab(config)
     scene.start(tool=RigidTransform([0, 0, 0.015])).simulator.AdvanceTo(0.5)
     assert proxy_z(scene, rendering) == pytest.approx(HALF + SKIN, abs=1e-7)
     sunk = MASS * G / rendering.proxy_gains.stiffness_N_per_m
@@ -83,10 +78,7 @@ def test_a_cube_rests_on_its_skin_and_sinks_by_its_weight(config):
 
 
 def test_a_copy_of_a_context_goes_on_as_the_original():
-    scene = PlantScene()
-    scene.add_slab()
-    scene.add("tool", CUBE, mass=MASS, side=2 * HALF)
-    rendering = render(scene.finalize())
+    scene, rendering = rest_on_a_slab()
     scene.start(tool=RigidTransform([0, 0, 0.015])).simulator.AdvanceTo(0.1)
 
     def z_of_copy(params):
@@ -105,10 +97,7 @@ def test_a_copy_of_a_context_goes_on_as_the_original():
 @plants
 def test_a_body_that_touches_nothing_falls_as_it_would(config):
     """Its proxy is no burden to it."""
-    scene = PlantScene(config)
-    scene.add_slab()
-    scene.add("tool", CUBE)
-    rendering = render(scene.finalize())
+    scene, rendering = rest_on_a_slab(config)
     scene.start(tool=RigidTransform([0, 0, 1])).simulator.AdvanceTo(0.1)
     assert scene.velocity("tool")[5] == pytest.approx(-G * 0.1, rel=1e-9)
     # To the one step that the proxy may be ahead, or what it falls in one.
@@ -258,28 +247,19 @@ def test_a_light_object_makes_the_spring_softer():
 
 
 def test_a_handle_that_is_too_stiff_for_the_proxy_is_warned_of():
-    scene = PlantScene()
-    scene.add_slab()
-    scene.add("tool", CUBE, mass=MASS, side=2 * HALF)
     stiff = CouplingParameters(rotational_damping_Nms_per_rad=0.004)
     with pytest.warns(SceneWarning, match="rotational_damping.* holds at most 0.0033"):
-        render(scene.finalize(), coupling=stiff)
+        rest_on_a_slab(coupling=stiff)
 
 
 def test_the_proxy_is_stated_before_the_run():
-    scene = PlantScene()
-    scene.add_slab()
-    scene.add("tool", CUBE, mass=MASS, side=2 * HALF)
-    rendering = render(scene.finalize())
+    _, rendering = rest_on_a_slab()
     assert rendering.proxy_gains.stiffness_N_per_m == pytest.approx(MASS / 2 / STEP**2)
     assert "drawn to a proxy with 5e+04 N/m" in repr(rendering)
 
 
 def test_a_proxy_has_no_derivatives_and_says_what_to_take():
-    scene = PlantScene(PLANTS["continuous"])
-    scene.add_slab()
-    scene.add("tool", CUBE)
-    render(scene.finalize())
+    scene, _ = rest_on_a_slab(PLANTS["continuous"])
     scene.start(tool=RigidTransform([0, 0, 0.015]))
     with pytest.raises(
         ValueError, match=r"body_of_proxy .*: take contact\.law: penalty"
@@ -288,12 +268,8 @@ def test_a_proxy_has_no_derivatives_and_says_what_to_take():
 
 
 def test_what_the_law_does_not_have_is_refused():
-    scene = PlantScene()
-    scene.add_slab()
-    scene.add("tool", CUBE)
     slow = ContactParameters(law="constraint", query_rate_hz=500.0)
-    scene.finalize()
     with pytest.raises(SceneError, match="query_rate_hz does nothing"):
-        render(scene, contact=slow)
+        rest_on_a_slab(contact=slow)
     with pytest.raises(SceneError, match=r"effects\.friction.*proxy has no friction"):
-        render(scene, effects=Effects(friction=FrictionParameters()))
+        rest_on_a_slab(effects=Effects(friction=FrictionParameters()))

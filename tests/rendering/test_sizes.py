@@ -6,7 +6,6 @@ import pytest
 from plant_scenes import PlantScene
 from pydrake.geometry import Box
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.scene.validation import SceneWarning
 
@@ -21,9 +20,7 @@ def render(tool_m, object_m, contact=SOFT):
     scene.finalize()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
-        AddHapticRendering(
-            scene.builder, scene.plant, scene.scene_graph, "tool", contact=contact
-        )
+        scene.render(contact=contact)
     return [str(item.message) for item in caught if " wide" in str(item.message)]
 
 

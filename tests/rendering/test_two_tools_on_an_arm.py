@@ -18,7 +18,6 @@ from pydrake.multibody.tree import (
     UnitInertia,
 )
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import ContactParameters, Effects, FrictionParameters
 
 MASS, SHAFT_M, LENGTH_M, P_CM_M = 0.05, 0.005, 0.16, 0.12
@@ -72,10 +71,7 @@ def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray
         )
     scene.finalize()
     renderings = [
-        AddHapticRendering(
-            scene.builder,
-            plant,
-            scene.scene_graph,
+        scene.render(
             f"spatula{n}",
             environment=["arm"],
             contact=ContactParameters(

@@ -15,6 +15,8 @@ from pydrake.multibody.tree import RigidBody, SpatialInertia
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder
 
+from drake_haptics import AddHapticRendering
+
 G = 9.81
 # A plant without a time step, and discrete ones with both kinds of output ports.
 PLANTS = {
@@ -64,6 +66,12 @@ class PlantScene:
         self.plant.Finalize()
         return self
 
+    def render(self, tool: str = "tool", **options):
+        """Adds haptic rendering of a tool to the plant, which is finalized."""
+        return AddHapticRendering(
+            self.builder, self.plant, self.scene_graph, tool, **options
+        )
+
     def start(self, **poses: RigidTransform) -> PlantScene:
         """Builds the diagram and places free bodies by their names."""
         self.diagram = self.builder.Build()
@@ -71,10 +79,14 @@ class PlantScene:
         self.root: Context = self.simulator.get_mutable_context()
         self.context = self.plant.GetMyMutableContextFromRoot(self.root)
         for name, X_WB in poses.items():
-            self.plant.SetFloatingBaseBodyPoseInWorldFrame(
-                self.context, self.plant.GetBodyByName(name), X_WB
-            )
+            self.place(name, X_WB)
         return self
+
+    def place(self, name: str, X_WB: RigidTransform) -> None:
+        """Places a free body."""
+        self.plant.SetFloatingBaseBodyPoseInWorldFrame(
+            self.context, self.plant.GetBodyByName(name), X_WB
+        )
 
     def pose(self, name: str) -> RigidTransform:
         """Returns the pose of a body."""
@@ -91,3 +103,18 @@ class PlantScene:
     def read(self, system, port: str):
         """Returns an output of a system."""
         return system.GetOutputPort(port).Eval(system.GetMyContextFromRoot(self.root))
+
+
+def over_a_slab(
+    shape: Shape,
+    *names: str,
+    config: MultibodyPlantConfig = PLANTS["sampled"],
+    gravity: float = G,
+    **inertia: float,
+) -> PlantScene:
+    """Returns a finalized scene of a slab and free bodies, "tool" if none is named."""
+    scene = PlantScene(config)
+    for name in names or ("tool",):
+        scene.add(name, shape, **inertia)
+    scene.add_slab()
+    return scene.finalize(gravity)

@@ -18,7 +18,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator
 from scipy.spatial.transform import Rotation
 
-from drake_haptics import AddHapticRendering, find_scene, load_scene
+from drake_haptics import find_scene, load_scene
 from drake_haptics._core import (
     AutoDiffVector,
     ContactExtrapolation,
@@ -28,7 +28,6 @@ from drake_haptics._core import (
     differentiate_contacts,
 )
 from drake_haptics.analysis.diagram_systems import find_state_layout
-from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.scene.schema import ContactParameters, Effects
@@ -367,11 +366,7 @@ def test_bodies_of_a_plant_that_move_are_followed_between_queries() -> None:
         scene.add("tool", Box(0.04, 0.04, 0.04), mass=0.1)
         scene.add("plate", Box(0.2, 0.2, 0.02), mass=0.5)
         scene.finalize()
-        rendering = AddHapticRendering(
-            scene.builder,
-            scene.plant,
-            scene.scene_graph,
-            "tool",
+        rendering = scene.render(
             contact=ContactParameters(
                 stiffness_N_per_m=500.0, damping_Ns_per_m=2.0, query_rate_hz=rate_hz
             ),
@@ -420,18 +415,3 @@ def test_derivatives_of_a_loop_with_carried_contacts_are_those_of_doubles() -> N
     # The tool moves by where the contacts were found, too.
     tool = [i for i, name in enumerate(names) if "haptic_tool" in name]
     assert np.abs(gradients.found[np.ix_(tool, held)]).max() > 1e-6
-
-
-def test_a_rate_that_the_tick_does_not_hold_is_refused() -> None:
-    scene = PlantScene(PLANTS["sampled"])
-    scene.add("tool", Box(0.04, 0.04, 0.04))
-    scene.add_slab()
-    scene.finalize()
-    with pytest.raises(SceneError, match="divided by a whole number, is 300"):
-        AddHapticRendering(
-            scene.builder,
-            scene.plant,
-            scene.scene_graph,
-            "tool",
-            contact=ContactParameters(query_rate_hz=300.0),
-        )
