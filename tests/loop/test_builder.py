@@ -3,30 +3,26 @@
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
-from diagram_parts import EVERY, SYSTEMS, names, sources
+from diagram_parts import EVERY, SYSTEMS, names, read_output, sources, unfed
+from loop_by_hand import add_loop_by_hand
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 from shapes import SHAPES
+from twin_rig import X_WH, make_arm
 
-from drake_haptics._core import RigidToolDynamics
 from drake_haptics.common.errors import MeshError, SceneError
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
-from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import (
     ContactParameters,
-    CouplingParameters,
     Effects,
     FrictionParameters,
     Material,
     Pose,
 )
-from drake_haptics.systems.arm.hand_path import HandPath
-from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
@@ -41,11 +37,6 @@ def test_a_scene_gets_the_systems_it_needs_and_no_more(tmp_path):
     assert names(haptic.loop.device) == {"rendered_force_hold", "simulated_arm"}
 
 
-def test_there_is_a_material_for_each_object(tmp_path):
-    with pytest.raises(ValueError, match=r"materials must have one entry.* of the 1"):
-        add_loop_around_a_cart(tmp_path, materials=[])
-
-
 def test_a_budget_of_ticks_adds_what_keeps_it_first_and_last(tmp_path):
     scene = over_a_plate(tmp_path, [START])
     scene.device.tick_budget_us = 500.0
@@ -57,9 +48,9 @@ def test_a_budget_of_ticks_adds_what_keeps_it_first_and_last(tmp_path):
     }
     systems = [system.get_name() for system in haptic.diagram.GetSystems()]
     assert (systems[0], systems[-1]) == ("load_shedding", "tick_end")
+    context = haptic.diagram.CreateDefaultContext()
     for taker in ("contact_query", "contact_clustering", "haptic_visualizer"):
         system = haptic.diagram.GetSubsystemByName(taker)
-        context = haptic.diagram.CreateDefaultContext()
         load_shedding = system.GetInputPort("load_shedding")
         assert load_shedding.Eval(system.GetMyContextFromRoot(context))[1] == 1.0
 
@@ -74,20 +65,12 @@ def test_tool_and_handle_start_where_the_path_does(tmp_path):
     scene.tool.grasp = Pose([0.0, 0.0, -0.03], [0.0, 0.0, 20.0])
     haptic = BuildHapticDiagram(scene)
     root = haptic.diagram.CreateDefaultContext()
-    tool, device = haptic.loop.haptic_tool, haptic.loop.device
-    X_WT = vector_to_pose(
-        tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root))
-    )
+    X_WT = vector_to_pose(read_output(haptic.loop.haptic_tool, "X_WT", root))
     np.testing.assert_allclose(X_WT.translation(), [0.01, 0.02, 0.06], atol=1e-15)
-    X_WH = vector_to_pose(
-        device.GetOutputPort("X_WH").Eval(device.GetMyContextFromRoot(root))
-    )
+    X_WH = vector_to_pose(read_output(haptic.loop.device, "X_WH", root))
     assert (X_WH @ scene.tool.grasp.to_rigid_transform()).IsNearlyEqualTo(X_WT, 1e-8)
     # There the coupling is at ease, so a run starts without a jolt.
-    coupling = haptic.loop.virtual_coupling
-    display = coupling.GetOutputPort("F_Ho_W_commanded").Eval(
-        coupling.GetMyContextFromRoot(root)
-    )
+    display = read_output(haptic.loop.virtual_coupling, "F_Ho_W_commanded", root)
     np.testing.assert_allclose(display, 0.0, atol=1e-5)
 
 
@@ -101,8 +84,7 @@ def test_contact_reaches_the_tool_as_the_scene_says(tmp_path):
     )
     haptic = BuildHapticDiagram(scene)
     root = haptic.diagram.CreateDefaultContext()
-    force = haptic.loop.penalty_force
-    F = force.GetOutputPort("F_To_W").Eval(force.GetMyContextFromRoot(root))
+    F = read_output(haptic.loop.penalty_force, "F_To_W", root)
     np.testing.assert_allclose(F, [0, 0, 0, 0, 0, 500.0 * 1e-3], atol=1e-9)
 
 
@@ -135,28 +117,16 @@ CONSTRAINT = ContactParameters(law="constraint")
 
 def add_loop_around_a_cart(tmp_path, builder=None, **options):
     """Returns a builder with a loop whose only object moves, and the loop."""
-    core = BuildHapticDiagram(over_a_plate(tmp_path, [START])).tool.core
-    preset = load_device_preset("phantom_premium_1_5_6dof")
-    arm = SimulatedArm(
-        preset.model_path,
-        preset.handle_link,
-        RigidTransform(),
-        HandPath([0.0], [RigidTransform(preset.workspace_center_m)]),
-        RigidTransform(),
-        None,
-    )
-    arm.set_name("arm")
+    haptic = BuildHapticDiagram(over_a_plate(tmp_path, [START]))
     builder = builder or DiagramBuilder()
-    loop = AddHapticLoop(
+    arm = make_arm()
+    loop = add_loop_by_hand(
         builder,
+        haptic,
         device=HapticDevice(arm, period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1),
-        tool=core,
-        tool_dynamics=RigidToolDynamics(0.1, np.zeros(3), 1e-5 * np.eye(3)),
-        objects=[ContactObject("cart", core)],
-        coupling=CouplingParameters(),
-        X_HT=RigidTransform(),
-        X_WT=RigidTransform(preset.workspace_center_m),
-        **{"contact": ContactParameters(), "period_s": 1e-3} | options,
+        objects=[ContactObject("cart", haptic.tool.core)],
+        X_WT=X_WH,
+        **options,
     )
     return builder, loop
 
@@ -209,7 +179,7 @@ def test_a_loop_that_is_refused_leaves_the_builder_as_it_was(tmp_path):
 
 @pytest.mark.parametrize("contact", [ContactParameters(), CONSTRAINT])
 def test_materials_that_are_not_one_for_each_object_are_refused(tmp_path, contact):
-    with pytest.raises(ValueError, match="materials must have one entry for each of"):
+    with pytest.raises(ValueError, match="must have one entry for each of the 1 obj"):
         add_loop_around_a_cart(tmp_path, contact=contact, materials=[])
 
 
@@ -239,11 +209,8 @@ def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path, effects):
     )
     diagram = builder.Build()
     fed = sources(diagram)
-    for system in diagram.GetSystems():
-        for i in range(system.num_input_ports()):
-            name = f"{system.get_name()}.{system.get_input_port(i).get_name()}"
-            # An object moves, so that there is no chain.
-            assert (name in fed) == (name != "device.coupled_motions"), name
+    # An object moves, so that there is no chain.
+    assert unfed(diagram) == {"device.coupled_motions"}
     assert {key for key, source in fed.items() if source == "pose.y0"} == {
         key for key in fed if key.endswith(".X_WO_cart")
     }

@@ -237,9 +237,8 @@ def test_the_default_skin_is_never_more_than_the_play(
     # It goes in.
     simulator = make_simulator(haptic)
     simulator.AdvanceTo(1.5)
-    X_WT = haptic.loop.outputs["X_WT"]
-    context = X_WT.get_system().GetMyContextFromRoot(simulator.get_context())
-    assert X_WT.Eval(context)[6] < 1e-3
+    X_WT = haptic.diagram.GetOutputPort("X_WT").Eval(simulator.get_context())
+    assert X_WT[6] < 1e-3
 
 
 def test_a_tool_that_is_pressed_into_a_wall_is_asked_beside_it() -> None:

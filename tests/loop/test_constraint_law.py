@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 import trimesh
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate, write
+from diagram_parts import names, read_output
 from fake_device import ScriptedDevice
+from loop_by_hand import add_loop_by_hand
 from pydrake.geometry import Meshcat, MeshcatParams
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
@@ -29,7 +31,6 @@ from drake_haptics.analysis.scene_stability import analyze_scene
 from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading
-from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
 from drake_haptics.scene.contact_law import calc_first_touch
@@ -45,6 +46,7 @@ from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.simulation.replay_log import replay
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.simulation.transfer_state import transfer_context
+from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 from drake_haptics.tick_log.log_diff import compare_logs
@@ -99,8 +101,7 @@ def test_every_shipped_scene_runs_and_nothing_touches(name):
 
 def test_the_systems_of_the_penalty_law_are_not_there(pressed):
     haptic = BuildHapticDiagram(pressed)
-    names = {system.get_name() for system in haptic.diagram.GetSystems()}
-    assert names == {"device", "constraint_tool_step"}
+    assert names(haptic.diagram) == {"device", "constraint_tool_step"}
     loop = haptic.loop
     assert loop.haptic_tool is loop.virtual_coupling
     for name in ("contact_query", "contact_clustering", "penalty_force"):
@@ -318,41 +319,26 @@ def test_a_run_goes_on_under_the_other_law(pressed, first):
 
 def test_a_loop_of_your_own_refuses_what_a_scene_does(pressed):
     haptic = BuildHapticDiagram(pressed)
-    arguments = {
-        "device": make_device(),
-        "tool": haptic.tool.core,
-        "tool_dynamics": haptic.loop.haptic_tool.dynamics,
-        "objects": [],
-        "contact": pressed.contact,
-        "coupling": pressed.coupling,
-        "X_HT": RigidTransform(),
-        "X_WT": RigidTransform(),
-        "period_s": 1e-3,
-        "effects": Effects(braking=BrakingParameters()),
-    }
+    effects = Effects(braking=BrakingParameters())
     with pytest.raises(SceneError, match=r"effects\.braking does nothing"):
-        AddHapticLoop(DiagramBuilder(), **arguments)
+        add_loop_by_hand(
+            DiagramBuilder(), haptic, device=make_device(), effects=effects
+        )
 
 
 def test_an_object_that_moves_gets_the_reaction(pressed):
     haptic = BuildHapticDiagram(pressed)
-    from drake_haptics.systems.contact.contact_query import ContactObject
-
     builder = DiagramBuilder()
     rest = RigidTransform([0.0, 0.0, TOOL_HALF_HEIGHT])
     # The slider's handle begins 5 mm below the place where the tool rests.
     plate = RigidTransform([0.0, 0.0, 5e-3 - PLATE_TOP])
-    loop = AddHapticLoop(
+    loop = add_loop_by_hand(
         builder,
+        haptic,
         device=make_device(),
-        tool=haptic.tool.core,
-        tool_dynamics=haptic.loop.haptic_tool.dynamics,
         objects=[ContactObject("plate", haptic.environment[0].core)],
-        contact=pressed.contact,
-        coupling=pressed.coupling,
         X_HT=rest,
         X_WT=RigidTransform([0.0, 0.0, TOOL_HALF_HEIGHT + 5e-3 + SKIN]),
-        period_s=1e-3,
     )
     X_WO = builder.AddSystem(ConstantVectorSource(pose_to_vector(plate)))
     V_WO = builder.AddSystem(ConstantVectorSource(np.zeros(6)))
@@ -364,9 +350,9 @@ def test_an_object_that_moves_gets_the_reaction(pressed):
             builder, loop, "lid", X_WO.get_output_port(), V_WO.get_output_port()
         )
     diagram = builder.Build()
-    step = loop.haptic_tool.GetMyContextFromRoot(diagram.CreateDefaultContext())
-    F_T = loop.F_To_W.Eval(step)
-    F_O = loop.haptic_tool.GetOutputPort("F_O_W").Eval(step)
+    root = diagram.CreateDefaultContext()
+    F_T = read_output(loop.haptic_tool, "F_To_W", root)
+    F_O = read_output(loop.haptic_tool, "F_O_W", root)
     assert F_T[5] > 0.5
     np.testing.assert_allclose(F_O[3:], -F_T[3:], atol=1e-9)
 
@@ -386,9 +372,7 @@ def test_a_servo_is_told_what_the_handle_feels_between_ticks(pressed):
     context = advance(haptic, 0.5)
     assert read(haptic, context, "F_Ho_W_commanded")[5] > 1.0
     model = haptic.diagram.GetSubsystemByName("handle_model")
-    slopes = model.GetOutputPort("handle_slopes").Eval(
-        model.GetMyContextFromRoot(context)
-    )
+    slopes = read_output(model, "handle_slopes", context)
     K = slopes[:36].reshape(6, 6)
     # In series with what does not give way; along the plate the tool follows.
     np.testing.assert_allclose(K[5, 5], pressed.coupling.stiffness_N_per_m, rtol=1e-3)

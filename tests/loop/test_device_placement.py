@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
+from diagram_parts import read_output
 from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform
 
@@ -53,10 +54,8 @@ def test_the_site_puts_the_tool_where_the_path_starts(scene):
 def test_the_tool_starts_where_the_device_holds_it(scene):
     """Not where the scene's hand would start: that hand holds nothing here."""
     haptic = BuildHapticDiagram(scene, device=device_at(scene, 0.004))
-    tool = haptic.loop.haptic_tool
     root = haptic.diagram.CreateDefaultContext()
-    q_WT = tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root))
-    X_WT = vector_to_pose(q_WT)
+    X_WT = vector_to_pose(read_output(haptic.loop.haptic_tool, "X_WT", root))
     expected = RigidTransform([0.0, 0.0, PLATE_TOP + TOOL_HALF_HEIGHT + 0.004])
     assert X_WT.IsNearlyEqualTo(expected, 1e-12)
 
@@ -116,9 +115,8 @@ def test_without_a_base_the_handle_starts_where_the_path_does(scene):
     scene.device.base = None
     read_first = make_reading(position=(3.0, -2.0, 1.0), wxyz=(0.6, 0.0, 0.0, 0.8))
     haptic = BuildHapticDiagram(scene, device=ScriptedDevice(lambda _: read_first))
-    device = haptic.loop.device
-    context = device.GetMyContextFromRoot(haptic.diagram.CreateDefaultContext())
-    q_WH = device.GetOutputPort("X_WH").Eval(context)
+    root = haptic.diagram.CreateDefaultContext()
+    q_WH = read_output(haptic.loop.device, "X_WH", root)
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     start = RigidTransform([0.0, 0.0, START[3] + PLATE_TOP]) @ X_TH
     np.testing.assert_allclose(q_WH[4:], start.translation(), atol=1e-12)
@@ -132,10 +130,9 @@ def test_a_device_that_knows_its_place_is_left_there(scene):
     scene.device.base = None
     reading = make_reading(position=(0.3, -0.2, 0.1))
     haptic = BuildHapticDiagram(scene, device=Placed(lambda _: reading))
-    device = haptic.loop.device
-    context = device.GetMyContextFromRoot(haptic.diagram.CreateDefaultContext())
+    root = haptic.diagram.CreateDefaultContext()
     expected = find_device_site(scene).X_WB @ np.array([0.3, -0.2, 0.1])
-    q_WH = device.GetOutputPort("X_WH").Eval(context)
+    q_WH = read_output(haptic.loop.device, "X_WH", root)
     np.testing.assert_allclose(q_WH[4:], expected, atol=1e-12)
 
 

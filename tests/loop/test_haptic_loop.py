@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
-from diagram_parts import EVERY
+from diagram_parts import EVERY, outputs
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LogVectorOutput
@@ -30,22 +30,17 @@ ALWAYS = {
 }
 
 
-def list_outputs(diagram):
-    ports = map(diagram.get_output_port, range(diagram.num_output_ports()))
-    return {port.get_name() for port in ports}
-
-
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     return over_a_plate(tmp_path_factory.mktemp("scene"), PRESSED)
 
 
 def test_a_diagram_has_an_output_for_what_it_has(scene, tmp_path):
-    assert list_outputs(BuildHapticDiagram(scene).diagram) == ALWAYS
+    assert outputs(BuildHapticDiagram(scene).diagram) == ALWAYS
     every = over_a_plate(tmp_path, PRESSED)
     every.effects = Effects(**EVERY)
     haptic = BuildHapticDiagram(every)
-    assert list_outputs(haptic.diagram) == ALWAYS | {"friction_force", "energy_J"}
+    assert outputs(haptic.diagram) == ALWAYS | {"friction_force", "energy_J"}
     # What is displayed comes last, and contacts are those that are felt.
     assert (
         haptic.loop.outputs["F_Ho_W_commanded"].get_system()

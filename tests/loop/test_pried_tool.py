@@ -10,17 +10,14 @@ import pytest
 import trimesh
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate, write
 from fake_device import ScriptedDevice, make_reading
-from pydrake.math import RigidTransform
+from loop_by_hand import add_loop_by_hand
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
-from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import make_device_port
 from drake_haptics.scene.device_preset import list_device_presets, load_device_preset
 from drake_haptics.scene.schema import EnvironmentObject, Pose
-from drake_haptics.systems.contact.contact_query import ContactObject
 
 PERIOD_S = 1e-3
 TURN_RAD, TURNED_IN, END_S = np.pi / 4, 200, 0.4
@@ -69,21 +66,7 @@ def add_loop(scene):
         max_torque_Nm=preset.max_torque_Nm,
     )
     builder = DiagramBuilder()
-    loop = AddHapticLoop(
-        builder,
-        device=device,
-        tool=built.tool.core,
-        tool_dynamics=make_tool_dynamics(built.tool.mesh, scene.tool.mass_kg),
-        objects=[
-            ContactObject(item.name, part.core, item.pose.to_rigid_transform())
-            for item, part in zip(scene.environment, built.environment, strict=True)
-        ],
-        contact=scene.contact,
-        coupling=scene.coupling,
-        X_HT=RigidTransform(),
-        X_WT=X_WH,
-        period_s=PERIOD_S,
-    )
+    loop = add_loop_by_hand(builder, built, device=device, X_WT=X_WH)
     return builder.Build(), loop
 
 

@@ -38,9 +38,7 @@ def scene(tmp_path):
 
 
 def read_height(haptic, context):
-    return haptic.loop.outputs["X_WT"].Eval(
-        haptic.loop.haptic_tool.GetMyContextFromRoot(context)
-    )[6]
+    return haptic.diagram.GetOutputPort("X_WT").Eval(context)[6]
 
 
 def test_in_drake_it_is_the_loop_of_that_rate(scene):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cube_scene import CONTACT, CUBE, HALF, MASS, G, make_scene
-from diagram_parts import names, sources
+from diagram_parts import inputs, names, outputs, sources
 from plant_scenes import PLANTS, over_a_slab
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.primitives import ConstantVectorSource
@@ -43,16 +43,6 @@ OUTPUTS = {
     "contact_wrench",
     "F_To_W",
 }
-
-
-def outputs(rendering):
-    ports = map(rendering.get_output_port, range(rendering.num_output_ports()))
-    return {port.get_name() for port in ports}
-
-
-def inputs(rendering):
-    ports = map(rendering.get_input_port, range(rendering.num_input_ports()))
-    return {port.get_name() for port in ports}
 
 
 def test_without_effects_there_is_only_contact():

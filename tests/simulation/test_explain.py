@@ -7,16 +7,15 @@ import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from diagram_parts import EVERY
 from fake_clock import FakeClock
+from loop_by_hand import add_loop_by_hand
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import Effects
 from drake_haptics.simulation.profiling import CallbackTimer, explain_tick
 from drake_haptics.simulation.run import run
-from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 
@@ -40,22 +39,15 @@ class StillArm(LeafSystem):
 
 def build_with_own_arm(haptic):
     """Returns the loop of a scene on a device that its user has written."""
-    scene, (plate,) = haptic.scene, haptic.environment
-    waypoint = scene.hand.path.waypoints[0]
+    waypoint = haptic.scene.hand.path.waypoints[0]
     arm = StillArm(waypoint.position_m[2])
     arm.set_name("my_arm")
     builder = DiagramBuilder()
-    loop = AddHapticLoop(
+    loop = add_loop_by_hand(
         builder,
+        haptic,
         device=HapticDevice(arm, period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1),
-        tool=haptic.tool.core,
-        tool_dynamics=haptic.loop.haptic_tool.dynamics,
-        objects=[ContactObject("plate", plate.core, RigidTransform())],
-        contact=scene.contact,
-        coupling=scene.coupling,
-        X_HT=RigidTransform(),
         X_WT=RigidTransform(waypoint.position_m),
-        period_s=1e-3,
     )
     return replace(haptic, diagram=builder.Build(), loop=loop)
 

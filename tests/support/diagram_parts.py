@@ -1,8 +1,8 @@
-"""The parts of a built diagram: names of systems and of the outputs that feed them."""
+"""The parts of a built diagram: names of systems and ports, and what outputs have."""
 
 from __future__ import annotations
 
-from pydrake.systems.framework import Diagram
+from pydrake.systems.framework import Context, Diagram, System
 
 from drake_haptics.scene.schema import (
     BrakingParameters,
@@ -35,6 +35,16 @@ def names(diagram: Diagram) -> set[str]:
     return {system.get_name() for system in diagram.GetSystems()}
 
 
+def inputs(system: System) -> set[str]:
+    ports = map(system.get_input_port, range(system.num_input_ports()))
+    return {port.get_name() for port in ports}
+
+
+def outputs(system: System) -> set[str]:
+    ports = map(system.get_output_port, range(system.num_output_ports()))
+    return {port.get_name() for port in ports}
+
+
 def sources(diagram: Diagram) -> dict[str, str]:
     """Returns the output that feeds each input, both as "system.port"."""
     return {
@@ -43,3 +53,15 @@ def sources(diagram: Diagram) -> dict[str, str]:
         )
         for (system, i), (source, j) in diagram.connection_map().items()
     }
+
+
+def unfed(diagram: Diagram) -> set[str]:
+    """Returns the inputs that no output feeds, as "system.port"."""
+    systems = diagram.GetSystems()
+    every = {f"{one.get_name()}.{port}" for one in systems for port in inputs(one)}
+    return every - sources(diagram).keys()
+
+
+def read_output(system: System, name: str, root: Context):
+    """Returns an output of a system of a diagram, by the Context of all of it."""
+    return system.GetOutputPort(name).Eval(system.GetMyContextFromRoot(root))

@@ -10,7 +10,7 @@ import trimesh
 from autodiff_check import constant, seeded
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
 from contact_samples import IDENTITY, box, hull, pose, spike
-from diagram_parts import EVERY, SYSTEMS, names, sources
+from diagram_parts import EVERY, SYSTEMS, names, read_output, sources, unfed
 from loop_gradients import calc_gradients, contact_states
 from plant_scenes import PLANTS, PlantScene
 from pydrake.geometry import Box
@@ -248,11 +248,8 @@ def test_the_systems_are_there_only_where_the_rate_is_given(tmp_path) -> None:
     haptic = BuildHapticDiagram(pressing(tmp_path, 250.0, **EVERY))
     assert BETWEEN <= names(haptic.diagram)
     fed = sources(haptic.diagram)
-    for system in haptic.diagram.GetSystems():
-        for i in range(system.num_input_ports()):
-            name = f"{system.get_name()}.{system.get_input_port(i).get_name()}"
-            # The coupling is part of no chain here.
-            assert (name in fed) == (name != "device.coupled_motions"), name
+    # The coupling is part of no chain here.
+    assert unfed(haptic.diagram) == {"device.coupled_motions"}
     assert fed["contact_query.X_WT"] == "pose_sampler.X_WT"
     assert fed["contact_extrapolator.found_X_WT"] == "pose_sampler.X_WT"
     assert fed["contact_extrapolator.X_WT"] == "haptic_tool.X_WT"
@@ -269,17 +266,11 @@ def test_contacts_are_looked_for_every_fourth_tick_and_carried_between(
     heights: list[float] = []
 
     def look(root) -> None:
-        found = loop.contact_query.GetOutputPort("contacts").Eval(
-            loop.contact_query.GetMyContextFromRoot(root)
-        )
+        found = read_output(loop.contact_query, "contacts", root)
         asked.append(id(found))
         kept.append(found)
-        now = loop.found_contacts.Eval(
-            loop.contact_extrapolator.GetMyContextFromRoot(root)
-        )
-        z = loop.haptic_tool.GetOutputPort("X_WT").Eval(
-            loop.haptic_tool.GetMyContextFromRoot(root)
-        )[6]
+        now = read_output(loop.contact_extrapolator, "contacts", root)
+        z = read_output(loop.haptic_tool, "X_WT", root)[6]
         heights.append(z)
         if len(now):
             # A face stays flat on a face here: the distance is known.
@@ -313,7 +304,6 @@ def watch(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
     third tick, so at contacts of every age.
     """
     loop = haptic.loop
-    tool = loop.haptic_tool
     tracker = SceneTracker(
         haptic.tool.core,
         [item.core for item in haptic.environment],
@@ -326,14 +316,10 @@ def watch(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
 
     def look(root) -> None:
         nonlocal missed
-        poses.append(
-            np.array(tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root)))
-        )
+        poses.append(np.array(read_output(loop.haptic_tool, "X_WT", root)))
         if loop.contact_extrapolator is None or len(poses) % 3:
             return
-        now = loop.found_contacts.Eval(
-            loop.contact_extrapolator.GetMyContextFromRoot(root)
-        )
+        now = read_output(loop.contact_extrapolator, "contacts", root)
         true = tracker.query(poses[-1])
         apart = np.linalg.norm(true.p_WC[:, None] - now.p_WC[None], axis=2)
         is_near = (apart < 5e-3) & (true.nhat_BA_W @ now.nhat_BA_W.T > 0.5)
@@ -391,14 +377,14 @@ def test_a_sample_begins_where_the_tool_is(tmp_path) -> None:
     haptic = BuildHapticDiagram(pressing(tmp_path, 250.0))
     simulator = Simulator(haptic.diagram)
     root = simulator.get_mutable_context()
-    tool, sample = haptic.loop.haptic_tool, haptic.loop.pose_sampler
+    tool = haptic.loop.haptic_tool
     X_WT = pose_to_vector(RigidTransform([0.01, 0.02, 0.03]))
     state = tool.GetMyMutableContextFromRoot(root).get_mutable_discrete_state_vector()
     value = np.array(state.value())
     value[:7] = X_WT
     state.SetFromVector(value)
     simulator.Initialize()
-    held = sample.GetOutputPort("X_WT").Eval(sample.GetMyContextFromRoot(root))
+    held = read_output(haptic.loop.pose_sampler, "X_WT", root)
     np.testing.assert_array_equal(held, X_WT)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from diagram_parts import read_output
 from fake_device import ScriptedDevice, make_reading
 from pydrake.systems.framework import EventStatus
 
@@ -19,6 +20,7 @@ from drake_haptics.tick_log.tick_log import read_tick_log
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 TICKS = 300
+NAMES = "X_WH V_WH F_Ho_W_commanded F_Ho_W_rendered X_WT V_WT".split()
 
 
 @pytest.fixture
@@ -54,28 +56,17 @@ def test_with_the_simulated_arm_it_is_what_a_monitor_sees_before_the_tick(
 
     def look(haptic, root):
         loop = haptic.loop
-        ports = [
-            loop.device.GetOutputPort("X_WH"),
-            loop.device.GetOutputPort("V_WH"),
-            loop.commanded_wrench,
-            loop.device.GetOutputPort("F_Ho_W_rendered"),
-            loop.haptic_tool.GetOutputPort("X_WT"),
-            loop.haptic_tool.GetOutputPort("V_WT"),
-            loop.device.GetOutputPort("status"),
+        values = [
+            haptic.diagram.GetOutputPort(name).Eval(root) for name in (*NAMES, "status")
         ]
-        values = [p.Eval(p.get_system().GetMyContextFromRoot(root)) for p in ports]
-        query = loop.contact_query
-        contacts = query.GetOutputPort("contacts").Eval(
-            query.GetMyContextFromRoot(root)
-        )
+        contacts = read_output(loop.contact_query, "contacts", root)
         nearest = min(contacts.distance, default=np.inf)
         seen.append([root.get_time(), *np.concatenate(values), len(contacts), nearest])
 
     rows = record(tmp_path / "log", scene, on_tick=look)
     seen = np.array(seen[:TICKS])
-    names = "X_WH V_WH F_Ho_W_commanded F_Ho_W_rendered X_WT V_WT".split()
     noted = np.hstack(
-        [rows["time_s"][:, None], *(rows[name] for name in names)]
+        [rows["time_s"][:, None], *(rows[name] for name in NAMES)]
         + [rows[name][:, None] for name in ("status", "contacts", "distance_m")]
     )
     np.testing.assert_array_equal(noted, seen)
