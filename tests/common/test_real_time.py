@@ -15,7 +15,7 @@ from drake_haptics.common.real_time import realtime_priority
 
 def make_pacer(clock, period_s=1e-3):
     """Returns a pacer by this clock, after its first tick."""
-    pacer = RealTimePacer(period_s, clock.read, clock.sleep)
+    pacer = RealTimePacer(period_s, clock, clock.sleep)
     assert pacer.wait() == 0.0
     return pacer
 
@@ -58,7 +58,7 @@ def test_work_that_takes_longer_than_a_tick_shortens_none():
 
 def test_what_comes_before_the_first_tick_is_no_lateness():
     clock = FakeClock()
-    pacer = RealTimePacer(1e-3, clock.read, clock.sleep)
+    pacer = RealTimePacer(1e-3, clock, clock.sleep)
     clock.now_s += 0.5
     assert pacer.wait() == 0.0
     assert pacer.wait() == pytest.approx(0.0, abs=1e-12)

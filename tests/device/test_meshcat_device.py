@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hand_clock import HandClock
+from fake_clock import FakeClock
 from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
@@ -22,7 +22,7 @@ HOME = "bring the handle home"
 
 @pytest.fixture
 def clock(monkeypatch):
-    clock = HandClock()
+    clock = FakeClock()
     monkeypatch.setattr(meshcat_device, "monotonic", clock)
     return clock
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagram_parts import read_output, read_port
 from fake_device import ScriptedDevice, make_reading
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
@@ -83,10 +84,7 @@ def read_between(haptic: HapticDiagram, root: Context) -> np.ndarray:
         haptic.diagram.GetOutputPort(name).Eval(root)
         for name in ("contacts", "clusters", "contact_wrench")
     )
-    models = [
-        port.Eval(port.get_system().GetMyContextFromRoot(root))
-        for port in loop.wrench_sources.values()
-    ]
+    models = [read_port(port, root) for port in loop.wrench_sources.values()]
     return np.concatenate(
         [
             contacts.distance,
@@ -162,7 +160,7 @@ def test_a_query_that_a_step_has_made_is_not_made_again() -> None:
     updated = tool.EvalUniquePeriodicDiscreteUpdate(tool.GetMyContextFromRoot(root))
     assert np.isfinite(updated.value()).all()
     chain = query.GetOutputPort("contact_chain").Eval(own)
-    X_WT = tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root))
+    X_WT = read_output(tool, "X_WT", root)
     assert chain.query(X_WT).query_seconds == before > 0.0
     chain.set_object_pose(0, np.array([1.0, 0, 0, 0, 1e-9, 0, 0]))
     assert chain.query(X_WT).query_seconds != before

@@ -1,10 +1,11 @@
 """An arm behind LCM messages, some of which are not commands."""
 
 import pytest
-from lcm_rig import PERIOD_S, add_device, make_axis, make_simulator
+from lcm_rig import PERIOD_S, add_device, make_axis
 from pydrake.lcm import DrakeLcm
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
+from twin_rig import make_simulator
 
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.device.lcm.haptic_messages import (

@@ -3,20 +3,11 @@
 import time
 
 import pytest
+from fake_clock import FakeClock
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
 from drake_haptics.simulation import profiling
 from drake_haptics.simulation.profiling import CallbackTimer
-
-
-class Clock:
-    """A clock that stands still between the steps that it is told to take."""
-
-    def __init__(self):
-        self.now_s = 1.0
-
-    def __call__(self):  # noqa: D102
-        return self.now_s
 
 
 class Worker(LeafSystem):
@@ -38,7 +29,7 @@ class Worker(LeafSystem):
 
 @pytest.fixture
 def clock(monkeypatch):
-    clock = Clock()
+    clock = FakeClock()
     monkeypatch.setattr(time, "perf_counter", clock)
     return clock
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
+from diagram_parts import read_port
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import EnergyLedger
@@ -51,8 +52,7 @@ def record(scene, duration_s):
 
     def read(root):
         for name, port in ports.items():
-            context = port.get_system().GetMyContextFromRoot(root)
-            seen[name].append(port.Eval(context).copy())
+            seen[name].append(read_port(port, root).copy())
 
     read(haptic.diagram.CreateDefaultContext())
     figures = run(haptic, duration_s, energy=True, on_tick=read).to_dict()

@@ -115,7 +115,7 @@ def test_a_device_of_the_users_own_is_a_part_that_is_said_to_be_theirs(tmp_path)
 def test_times_and_shares_add_to_the_tick(tmp_path, monkeypatch):
     # Times are then numbers of readings, whatever else the computer does.
     clock = FakeClock(reading_s=1e-6)
-    monkeypatch.setattr(time, "perf_counter", clock.read)
+    monkeypatch.setattr(time, "perf_counter", clock)
     parts, figures = explain(touching(tmp_path, Effects(**EVERY)))
     assert sum(part.share for part in parts) == pytest.approx(1.0)
     tick_us = sum(part.mean_us for part in parts)

@@ -223,8 +223,8 @@ def test_in_real_time_a_run_is_not_faster_than_the_clock(haptic):
 
 def test_waiting_is_not_part_of_a_tick(haptic, monkeypatch):
     clock = FakeClock(reading_s=1e-6)
-    monkeypatch.setattr(time, "perf_counter", clock.read)
-    pace = RealTimePacer(haptic.period_s, clock.read, clock.sleep)
+    monkeypatch.setattr(time, "perf_counter", clock)
+    pace = RealTimePacer(haptic.period_s, clock, clock.sleep)
     figures = run(haptic, 0.2, pace=pace).to_dict()
     assert pace.ticks == 199 and pace.skipped == 0
     # Two readings: the one that ends the tick and the one that waiting begins with.
@@ -275,7 +275,6 @@ def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
 def test_the_step_is_fine_enough_for_the_arm(haptic):
     # A four times smaller step changes the handle's motion, at 0.15 m/s, by less
     # than the resolution of such devices, 30 µm.
-    port = haptic.loop.device.GetOutputPort("X_WH")
     ends = []
     for share in (1.0, 0.25):
         simulator = make_simulator(haptic)
@@ -283,6 +282,6 @@ def test_the_step_is_fine_enough_for_the_arm(haptic):
             share * haptic.period_s
         )
         simulator.AdvanceTo(0.15)
-        context = haptic.loop.device.GetMyContextFromRoot(simulator.get_context())
-        ends.append(port.Eval(context)[4:])
+        X_WH = haptic.diagram.GetOutputPort("X_WH").Eval(simulator.get_context())
+        ends.append(X_WH[4:])
     assert np.linalg.norm(ends[0] - ends[1]) < 1e-5

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate, write
+from diagram_parts import read_output, read_port, read_tool
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import (
@@ -57,11 +58,9 @@ def plain(scene):
 def run_until(haptic, time_s, context=None):
     """Returns a context in which a run was ended at a tick, and what it showed."""
     ends, shown = [], []
-    hold = haptic.loop.device.GetOutputPort("F_Ho_W_rendered")
 
     def end_tick(root):
-        device = haptic.loop.device.GetMyContextFromRoot(root)
-        shown.append(hold.Eval(device))
+        shown.append(read_output(haptic.loop.device, "F_Ho_W_rendered", root))
         if root.get_time() > time_s - 1e-6:
             ends.append(root.Clone())
         return bool(ends)
@@ -70,16 +69,9 @@ def run_until(haptic, time_s, context=None):
     return ends[0], np.array(shown)
 
 
-def read_tool(haptic, root):
-    """Returns [X_WT; V_WT] (13,)."""
-    tool = haptic.loop.haptic_tool.GetMyContextFromRoot(root)
-    return tool.get_discrete_state_vector().value()
-
-
 def read_wrench(haptic, root, name="contact"):
     """Returns the wrench (6) of a source on the tool."""
-    port = haptic.loop.wrench_sources[name]
-    return port.Eval(port.get_system().GetMyContextFromRoot(root))[:6]
+    return read_port(haptic.loop.wrench_sources[name], root)[:6]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from diagram_parts import read_output, read_tool
 from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform, RollPitchYaw
 
@@ -47,12 +48,6 @@ def run_on(haptic, context, duration_s):
 
     run(haptic, duration_s, context=context, on_tick=end_tick)
     return ends[0]
-
-
-def read_tool(haptic, root):
-    """Returns [X_WT; V_WT] (13,)."""
-    tool = haptic.loop.haptic_tool.GetMyContextFromRoot(root)
-    return tool.get_discrete_state_vector().value()
 
 
 def move_by(step):
@@ -112,12 +107,9 @@ def test_a_hand_takes_the_handle_where_a_device_left_it(scene, by_hand, under_wa
     assert find_handle(by_hand, there).IsNearlyEqualTo(find_handle(held, context), 1e-9)
     np.testing.assert_array_equal(read_tool(by_hand, there), read_tool(held, context))
     # At rest, and nothing is shown yet.
-    loop = by_hand.loop
-    at_device = loop.device.GetMyContextFromRoot(there)
-    V_WH = loop.device.GetOutputPort("V_WH").Eval(at_device)
-    np.testing.assert_array_equal(V_WH, np.zeros(6))
-    F = loop.device.GetOutputPort("F_Ho_W_rendered").Eval(at_device)
-    np.testing.assert_array_equal(F, np.zeros(6))
+    for name in ("V_WH", "F_Ho_W_rendered"):
+        shown = read_output(by_hand.loop.device, name, there)
+        np.testing.assert_array_equal(shown, np.zeros(6))
 
 
 def test_out_of_the_arms_reach_the_hand_begins_at_its_path(scene, by_hand):

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hand_clock import HandClock
+from fake_clock import FakeClock
 
 from drake_haptics import SceneTracker
 from drake_haptics.loop import builder
@@ -24,19 +24,6 @@ END_S = 4.8
 SOFT = {"tolerance_m": 1e-3, "stiffness_N_per_m": 2e3, "damping_Ns_per_m": 4.0}
 
 
-class TickingClock(HandClock):
-    """Each look at it is half a tick's work later."""
-
-    def __init__(self):
-        super().__init__()
-        self.step_s = 0.4 * BUDGET_S
-
-    def __call__(self):
-        """Returns the time, s."""
-        self.now_s += self.step_s
-        return self.now_s
-
-
 def build(scene_name, monkeypatch, *, budget_us=1e6 * BUDGET_S, **contact):
     """Returns a scene with a budget, and the clock that its ticks are timed by."""
     scene = load_scene(find_scene(scene_name))
@@ -44,7 +31,8 @@ def build(scene_name, monkeypatch, *, budget_us=1e6 * BUDGET_S, **contact):
     scene.effects = Effects(friction=FrictionParameters(), braking=BrakingParameters())
     for name, value in {**SOFT, **contact}.items():
         setattr(scene.contact, name, value)
-    clock = TickingClock()
+    # Each look at it is half a tick's work later.
+    clock = FakeClock(reading_s=0.4 * BUDGET_S)
     monkeypatch.setattr(builder, "TickMeter", partial(TickMeter, clock))
     return BuildHapticDiagram(scene), clock
 
@@ -67,7 +55,7 @@ def watch_run(haptic, clock):
         time_s = context.get_time()
         slow = SLOW_S[0] <= time_s < SLOW_S[1]
         # What a tick takes passes while it is worked at.
-        clock.step_s = BUDGET_S * (1.6 if slow else 0.4)
+        clock.reading_s = BUDGET_S * (1.6 if slow else 0.4)
         own = {
             system: system.GetMyContextFromRoot(context)
             for system in (

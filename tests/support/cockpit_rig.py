@@ -21,8 +21,7 @@ MOUSE = {"do": "handle", "to": "mouse"}
 
 def find_tool(haptic, root):
     """The tool's pose (7,)."""
-    tool = haptic.loop.haptic_tool
-    return tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root)).copy()
+    return haptic.diagram.GetOutputPort("X_WT").Eval(root).copy()
 
 
 class ScriptedPage:

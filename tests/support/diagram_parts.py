@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pydrake.systems.framework import Context, Diagram, System
+from pydrake.systems.framework import Context, Diagram, OutputPort, System
 
 from drake_haptics.scene.schema import (
     BrakingParameters,
@@ -62,6 +62,17 @@ def unfed(diagram: Diagram) -> set[str]:
     return every - sources(diagram).keys()
 
 
+def read_port(port: OutputPort, root: Context):
+    """Returns what an output port within a diagram has, by the Context of all of it."""
+    return port.Eval(port.get_system().GetMyContextFromRoot(root))
+
+
 def read_output(system: System, name: str, root: Context):
-    """Returns an output of a system of a diagram, by the Context of all of it."""
-    return system.GetOutputPort(name).Eval(system.GetMyContextFromRoot(root))
+    """Returns what an output of a system has, as `read_port`."""
+    return read_port(system.GetOutputPort(name), root)
+
+
+def read_tool(haptic, root: Context):
+    """Returns [X_WT; V_WT] (13,)."""
+    tool = haptic.loop.haptic_tool.GetMyContextFromRoot(root)
+    return tool.get_discrete_state_vector().value()

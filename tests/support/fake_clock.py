@@ -11,12 +11,12 @@ class FakeClock:
 
     def __init__(self, *, reading_s=0.0, oversleep_s=0.0):
         self.now_s = 5.0
-        self._reading_s = reading_s
+        self.reading_s = reading_s
         self.oversleep_s = oversleep_s
 
-    def read(self):
+    def __call__(self):
         """Returns the time, s, in place of `time.perf_counter`."""
-        self.now_s += self._reading_s
+        self.now_s += self.reading_s
         return self.now_s
 
     def sleep(self, seconds):

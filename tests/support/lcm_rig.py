@@ -3,41 +3,37 @@
 import numpy as np
 from one_axis_device import make_one_axis_device
 from pydrake.math import RigidTransform
-from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.lcm import (
     LcmInterfaceSystem,
     LcmPublisherSystem,
     LcmSubscriberSystem,
 )
 from pydrake.systems.primitives import AffineSystem
+from twin_rig import PERIOD as PERIOD_S
+from twin_rig import PRESET, X_WH
 
 from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
     lcmt_haptic_status,
 )
 from drake_haptics.loop.drivers import AddLcmDriver
-from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.lcm.haptic_command_sender import HapticCommandSender
 from drake_haptics.systems.lcm.haptic_status_receiver import HapticStatusReceiver
 
-PERIOD_S = 1e-3
 MAX_FORCE_N, MAX_TORQUE_NM = 8.5, 0.188
-START = np.array(
-    load_device_preset("phantom_premium_1_5_6dof").workspace_center_m, float
-)
+START = X_WH.translation()
 
 
 def make_arm():
     """Returns an arm whose hand rests for half a second, then goes 2 cm down."""
-    preset = load_device_preset("phantom_premium_1_5_6dof")
     above, below = RigidTransform(START), RigidTransform(START - [0.0, 0.0, 0.02])
     path = HandPath([0.0, 0.5, 0.7, 1.5], [above, above, below, below], periodic=False)
     return SimulatedArm(
-        preset.model_path,
-        preset.handle_link,
+        PRESET.model_path,
+        PRESET.handle_link,
         RigidTransform(),
         path,
         RigidTransform(),
@@ -92,14 +88,6 @@ def add_host(builder, lcm, law):
     ]:
         builder.Connect(output, input)
     return receiver
-
-
-def make_simulator(diagram, context=None):
-    """A simulator of one fixed step per tick, as `make_simulator` of the package."""
-    simulator = Simulator(diagram, context)
-    ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD_S)
-    simulator.get_mutable_integrator().set_fixed_step_mode(True)
-    return simulator
 
 
 def make_axis():

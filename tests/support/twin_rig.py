@@ -88,9 +88,9 @@ class CoupledArm:
         return np.array(states)
 
 
-def make_simulator(system):
+def make_simulator(system, context=None):
     """Returns a simulator with the steps that a run has."""
-    simulator = Simulator(system)
+    simulator = Simulator(system, context)
     ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD)
     simulator.get_mutable_integrator().set_fixed_step_mode(True)
     return simulator

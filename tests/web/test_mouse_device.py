@@ -9,7 +9,7 @@ import weakref
 import numpy as np
 import pytest
 import websocket
-from hand_clock import HandClock
+from fake_clock import FakeClock
 from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
@@ -32,7 +32,7 @@ HEIGHT_M = 2 * 4 * RADIUS_M * np.tan(np.deg2rad(37.5))
 
 @pytest.fixture
 def clock(monkeypatch):
-    clock = HandClock()
+    clock = FakeClock()
     for module in (mouse_device, page_handle):
         monkeypatch.setattr(module, "monotonic", clock)
     return clock

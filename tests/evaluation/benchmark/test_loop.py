@@ -142,15 +142,15 @@ def test_a_paced_loop_waits_for_the_clock_and_waiting_belongs_to_no_tick(
 ) -> None:
     problem = make_problem(duration_s=0.1)
     clock = FakeClock(reading_s=1e-6)
-    monkeypatch.setattr(time, "perf_counter", clock.read)
+    monkeypatch.setattr(time, "perf_counter", clock)
     monkeypatch.setattr(
         simulated_ticks,
         "RealTimePacer",
-        lambda period_s: RealTimePacer(period_s, clock.read, clock.sleep),
+        lambda period_s: RealTimePacer(period_s, clock, clock.sleep),
     )
-    start_s = clock.read()
+    start_s = clock()
     seconds = ThisLoop(problem, paced=True).time()
-    elapsed_s = clock.read() - start_s
+    elapsed_s = clock() - start_s
     assert len(seconds) == len(problem.motion)
     # The first tick, the first of the clock and the last wait for nothing.
     assert elapsed_s > (len(seconds) - 3) * problem.motion.period_s

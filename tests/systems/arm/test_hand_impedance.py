@@ -11,15 +11,14 @@ from pydrake.multibody.tree import (
     UnitInertia,
 )
 from twin_check import check_twin
+from twin_rig import load_plant
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.hand_impedance import HandImpedance
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import (
     UnreachableError,
-    make_arm_plant,
     solve_arm_positions,
 )
 
@@ -29,12 +28,9 @@ NO_WRENCH = np.zeros(6)
 K, B, KR, BR = 300.0, 5.0, 1.0, 0.02
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def plant():
-    preset = load_device_preset("phantom_premium_1_5_6dof")
-    plant = make_arm_plant(preset.model_path, RigidTransform())
-    plant.Finalize()
-    return plant
+    return load_plant()
 
 
 def hand_on(plant, path, gains):

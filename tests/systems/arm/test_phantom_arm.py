@@ -6,11 +6,9 @@ the serial arm's third angle is q3 - q2.
 
 import numpy as np
 import pytest
-from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.math import RollPitchYaw
 from pydrake.multibody.tree import SpatialInertia
-
-from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.simulated_arm import make_arm_plant
+from twin_rig import PRESET, load_plant
 
 L1, L2, L3 = 0.215, 0.170, 0.0325
 MA, MC = 0.0202, 0.0249
@@ -57,12 +55,9 @@ def tip(q1, q2, q3):
     return np.array([r * np.cos(q1), r * np.sin(q1), L1 * np.sin(q2) - L2 * np.cos(q3)])
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def arm():
-    preset = load_device_preset("phantom_premium_1_5_6dof")
-    plant = make_arm_plant(preset.model_path, RigidTransform())
-    plant.Finalize()
-    return plant
+    return load_plant()
 
 
 def motor_angles(count):
@@ -108,5 +103,4 @@ def test_the_gimbal_turns_the_handle_by_yaw_pitch_roll(arm):
 
 
 def test_at_zero_it_is_in_the_middle_of_its_workspace(arm):
-    preset = load_device_preset("phantom_premium_1_5_6dof")
-    np.testing.assert_allclose(tip(0, 0, 0), preset.workspace_center_m, atol=1e-15)
+    np.testing.assert_allclose(tip(0, 0, 0), PRESET.workspace_center_m, atol=1e-15)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hand_clock import HandClock
+from fake_clock import FakeClock
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
@@ -31,7 +31,7 @@ class Loop:
     """A loop that does nothing but work, and waits between its ticks."""
 
     def __init__(self):
-        clock = HandClock()
+        clock = FakeClock()
         meter = TickMeter(clock)
         builder = DiagramBuilder()
         self._shedding = builder.AddSystem(
@@ -115,7 +115,7 @@ def test_what_cannot_be_is_refused(name, value):
 
 
 def test_between_two_ticks_nothing_is_measured():
-    clock = HandClock()
+    clock = FakeClock()
     meter = TickMeter(clock)
     meter.end()
     assert meter.busy_s == 0.0
@@ -128,7 +128,7 @@ def test_between_two_ticks_nothing_is_measured():
 
 
 def test_a_loop_that_may_shed_load_can_be_differentiated():
-    meter = TickMeter(HandClock())
+    meter = TickMeter(FakeClock())
     builder = DiagramBuilder()
     builder.AddSystem(LoadShedding(meter, PERIOD_S, BUDGET_S, CELL_M))
     builder.AddSystem(TickEnd(meter, PERIOD_S))

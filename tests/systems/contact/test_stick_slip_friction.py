@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from contact_samples import box
+from diagram_parts import read_output
 from effect_chain import make_chain
 from friction_bodies import sled
 from pydrake.common.value import Value
@@ -285,9 +286,7 @@ def test_its_twin_has_all_derivatives_as_it_sticks_and_slides(seed, way, slides,
         chain.GetInputPort(name).FixValue(context, value)
     context.SetDiscreteState(state)
     friction = chain.GetSubsystemByName("friction")
-    step = friction.GetOutputPort("friction_force").Eval(
-        friction.GetMyContextFromRoot(context)
-    )
+    step = read_output(friction, "friction_force", context)
     assert len(step.sliding) == 4
     assert (step.sliding == slides).all()
     grip = step.next_state[14 + 11 :: SLOT_SIZE][:4]

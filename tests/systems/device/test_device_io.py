@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from device_diagram import PERIOD, X_WB, make_diagram
+from diagram_parts import read_output
 from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.multibody.math import SpatialForce
@@ -113,9 +114,8 @@ def test_a_device_with_nothing_new_stays_where_it_was():
     diagram, device = make_diagram(ScriptedDevice(lambda _: None), first=first)
     simulator = Simulator(diagram)
     simulator.AdvanceTo(3 * PERIOD)
-    context = device.GetMyContextFromRoot(simulator.get_context())
     np.testing.assert_allclose(
-        device.GetOutputPort("X_WH").Eval(context),
+        read_output(device, "X_WH", simulator.get_context()),
         pose_to_vector(X_WB @ vector_to_pose(first.X_BH)),
         atol=1e-14,
     )
@@ -135,8 +135,7 @@ def test_the_reading_is_shown_as_the_device_gave_it():
     diagram, device = make_diagram(ScriptedDevice(lambda _: given))
     simulator = Simulator(diagram)
     simulator.AdvanceTo(PERIOD / 2)
-    context = device.GetMyContextFromRoot(simulator.get_context())
-    shown = device.GetOutputPort("reading").Eval(context)
+    shown = read_output(device, "reading", simulator.get_context())
     for field in fields(DeviceReading):
         value, expected = (getattr(one, field.name) for one in (shown, given))
         assert type(value) is type(expected)

@@ -12,13 +12,13 @@ from lcm_rig import (
     add_lcm,
     make_arm,
     make_axis,
-    make_simulator,
     make_spring,
 )
 from pydrake.lcm import DrakeLcm
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import DiscreteTimeDelay
+from twin_rig import make_simulator
 
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.device.gate import GateStatus

@@ -1,10 +1,10 @@
 """What is drawn, when, and that a recording holds all of it."""
 
 import copy
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fake_clock import FakeClock
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.geometry import Rgba
@@ -212,8 +212,8 @@ def test_objects_that_move_follow_their_port_and_others_are_placed_once(meshcat)
 
 
 def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
-    clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    clock = FakeClock()
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", clock)
     meshcat = FakeMeshcat()
     table = ContactObject("table", make_mesh(), RigidTransform())
     visualizer = make_visualizer(meshcat, [table])
@@ -222,7 +222,7 @@ def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
     def see(view, visible):
         meshcat.properties.clear()
         visualizer.Show(view, visible)
-        clock.now += 1.0
+        clock.now_s += 1.0
         visualizer.ForcedPublish(context)
         return {
             path.removeprefix("/haptics/"): value

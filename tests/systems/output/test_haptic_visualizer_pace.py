@@ -1,9 +1,8 @@
 """When the loop is drawn, and how little of a tick that takes."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from fake_clock import FakeClock
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from visualizer_rig import FakeMeshcat, make_context, make_visualizer
@@ -19,22 +18,22 @@ def test_nothing_is_drawn_while_nobody_looks():
 
 
 def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
-    clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    clock = FakeClock()
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", clock)
     meshcat = FakeMeshcat()
     drawn = []
 
     def slow_transform(path, X, time=None):
         if path == "/haptics/tool":
-            drawn.append(clock.now)
-            clock.now += 0.010  # a frame takes 10 ms
+            drawn.append(clock.now_s)
+            clock.now_s += 0.010  # a frame takes 10 ms
 
     visualizer = make_visualizer(meshcat)
     meshcat.SetTransform = slow_transform
-    while clock.now < 102.0:
-        X_WT = RigidTransform([clock.now, 0, 0])
+    while clock.now_s < 7.0:
+        X_WT = RigidTransform([clock.now_s, 0, 0])
         visualizer.ForcedPublish(make_context(visualizer, X_WT=X_WT))
-        clock.now += 1 / 32
+        clock.now_s += 1 / 32
     assert 0.010 * len(drawn) <= 0.05 * 2.0 + 0.010
     assert len(drawn) >= 8
 
@@ -42,8 +41,8 @@ def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
 @pytest.mark.parametrize("recording", [False, True])
 def test_what_rests_is_sent_once_and_recorded_in_every_frame(monkeypatch, recording):
     """A page draws whatever it is sent, which without a graphics card takes long."""
-    clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    clock = FakeClock()
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", clock)
     meshcat = FakeMeshcat()
     visualizer = make_visualizer(meshcat)
     if recording:
@@ -56,7 +55,7 @@ def test_what_rests_is_sent_once_and_recorded_in_every_frame(monkeypatch, record
     meshcat.SetTransform = meshcat.SetProperty = call
 
     def draw(p_WT):
-        clock.now += 1.0
+        clock.now_s += 1.0
         sent.clear()
         X_WT = RigidTransform(p_WT)
         context = make_context(visualizer, [-1e-3], f_H_W=(0, 0, 1), X_WT=X_WT)
@@ -76,15 +75,15 @@ def test_what_rests_is_sent_once_and_recorded_in_every_frame(monkeypatch, record
 
 
 def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
-    clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    clock = FakeClock()
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", clock)
     meshcat = FakeMeshcat()
     visualizer = make_visualizer(meshcat)
     calls = []
 
     def call(path, *args):
         calls.append((ticks[-1], path))
-        clock.now += 20e-6  # what a call of Meshcat's takes
+        clock.now_s += 20e-6  # what a call of Meshcat's takes
 
     meshcat.SetTransform = meshcat.SetProperty = call
     ticks = [0]
