@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 from cell_mesh import cell_mesh
-from contact_samples import box, hull, spike
+from contact_samples import box, hull, join_hulls, spike
 from continuity_walk import Home, WalkScene
 from press_rig import GAINS, sample_presses
 from press_tools import MODELS, make_tool
@@ -16,7 +16,6 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 from slide_rig import make_slide_tools
 from slide_scenes import TOP_M, fifty_pieces
-from wrench_chain import join_hulls
 
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose

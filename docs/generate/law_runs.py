@@ -13,7 +13,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from constraint_rig import SKIN_M, ConstraintLoop
-from hollow_block import decomposed, height, hollow_block, spike
+from contact_samples import decomposed
+from hollow_block import height, hollow_block, spike
 from press_cells import TOOLS
 from press_rig import (
     COUPLING,

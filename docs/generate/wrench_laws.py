@@ -9,16 +9,8 @@ from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
-from contact_samples import box, hull, spike
-from wrench_chain import (
-    DAMPING_NS_PER_M,
-    Body,
-    Case,
-    join_hulls,
-    place,
-    run_chain,
-    wrench_at,
-)
+from contact_samples import box, hull, join_hulls, spike
+from wrench_chain import DAMPING_NS_PER_M, Body, Case, place, run_chain, wrench_at
 from wrench_scenarios import (
     DISTANCES_M,
     OFFSET,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hollow_block import decomposed, height, hollow_block, spike
+from contact_samples import decomposed
+from hollow_block import height, hollow_block, spike
 
 from drake_haptics import _core
 from drake_haptics.systems.tool.virtual_coupling import coupling_wrench

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from mesh_samples import joined
 from press_tools import MODELS
 
 from drake_haptics import _core
@@ -22,12 +23,21 @@ def hull(points: object) -> _core.ConvexPieces:
     """One convex piece, whole boundary."""
     points = np.asarray(points, dtype=float)
     polytope = _core.ConvexPolytope(points)
-    triangles = cut_fans(polytope.facets)
+    return decomposed(polytope.vertices, cut_fans(polytope.facets))
+
+
+def decomposed(V: object, F: object) -> _core.ConvexPieces:
+    """The pieces of a surface that bounds a solid."""
     return _core.decompose_surface(
-        polytope.vertices,
-        triangles,
-        np.ones(len(triangles), dtype=np.uint8),
+        np.ascontiguousarray(V, float),
+        np.ascontiguousarray(F, np.int32),
+        np.ones(len(F), np.uint8),
     )
+
+
+def join_hulls(*bodies: _core.ConvexPieces) -> _core.ConvexPieces:
+    """Returns convex solids that do not meet as one body."""
+    return decomposed(*joined(*((body.vertices, body.triangles) for body in bodies)))
 
 
 def box(size: object, center: object = (0, 0, 0)) -> _core.ConvexPieces:
@@ -52,14 +62,7 @@ def contacts_at(points: object, depths: object, tolerance: float) -> _core.Conta
     """
     points = np.asarray(points, dtype=float)
     tips = np.column_stack([points[:, :2], -np.asarray(depths, dtype=float)])
-    tool = [spike(tip) for tip in tips]
-    vertices = np.vstack([piece.vertices for piece in tool])
-    offsets = np.cumsum([0] + [len(piece.vertices) for piece in tool[:-1]])
-    triangles = np.vstack(
-        [p.triangles + o for p, o in zip(tool, offsets, strict=True)]
-    ).astype(np.int32)
-    ones = np.ones(len(triangles), dtype=np.uint8)
-    body = _core.decompose_surface(vertices, triangles, ones)
+    body = join_hulls(*map(spike, tips))
     slab = box([10, 10, 1], [0, 0, -0.5])
     return _core.SceneTracker(body, [slab], tolerance).query(IDENTITY)
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from contact_samples import IDENTITY, box, hull, spike
+from contact_samples import IDENTITY, box, decomposed, hull, spike
+from mesh_samples import joined
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
@@ -46,14 +47,8 @@ def _placed(
     parts: Sequence[tuple[_core.ConvexPieces, Rotation, np.ndarray]],
 ) -> _core.ConvexPieces:
     """One body of many, each turned and moved."""
-    vertices = [R.apply(part.vertices) + p for part, R, p in parts]
-    starts = np.cumsum([0] + [len(v) for v in vertices[:-1]])
-    triangles = np.vstack(
-        [part.triangles + s for (part, _, _), s in zip(parts, starts, strict=True)]
-    ).astype(np.int32)
-    return _core.decompose_surface(
-        np.vstack(vertices), triangles, np.ones(len(triangles), dtype=np.uint8)
-    )
+    moved = ((R.apply(part.vertices) + p, part.triangles) for part, R, p in parts)
+    return decomposed(*joined(*moved))
 
 
 def scatter(sites: Sequence[Site], tolerance: float) -> _core.ContactSet:

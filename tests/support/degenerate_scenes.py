@@ -17,6 +17,7 @@ import numpy as np
 import trimesh
 from box_scenes import write_scene
 from cell_mesh import cell_mesh
+from fake_device import FreeHandle, make_reading
 from minkowski_truth import place, signed_distance
 from scipy.spatial.transform import Rotation
 
@@ -160,13 +161,11 @@ def make_scene(
     )
 
 
-class Handle(DeviceBackend):
+class Handle(FreeHandle):
     """A handle that goes along a way, one step at each reading."""
 
-    is_placed = True
-    shows_force = False
-
     def __init__(self, way_W: np.ndarray):
+        super().__init__(self._find_place)
         points = [np.repeat(way_W[:1], 20, axis=0)]
         for start, end in pairwise(way_W):
             length = float(np.linalg.norm(end - start))
@@ -176,26 +175,11 @@ class Handle(DeviceBackend):
             )
             points.append(np.repeat(end[None], round(HOLD_S / PERIOD_S), axis=0))
         self.p_WH = np.concatenate(points)
-        self._reads = 0
 
-    def read(self) -> DeviceReading:
-        """The next place."""
-        k = min(self._reads, len(self.p_WH) - 1)
+    def _find_place(self, call: int) -> DeviceReading:
+        k = min(call, len(self.p_WH)) - 1
         v = (self.p_WH[k] - self.p_WH[max(k - 1, 0)]) / PERIOD_S
-        self._reads += 1
-        return DeviceReading(
-            sequence=self._reads,
-            time_s=PERIOD_S * self._reads,
-            X_BH=np.array([1.0, 0, 0, 0, *self.p_WH[k]]),
-            V_BH=np.array([0, 0, 0, *v]),
-            F_Ho_B=np.zeros(6),
-        )
-
-    def write(self, command: object) -> None:
-        """Shows nothing."""
-
-    def close(self) -> None:
-        """Has nothing to close."""
+        return make_reading(call, position=self.p_WH[k], velocity=v)
 
 
 @dataclass(frozen=True)

@@ -46,3 +46,11 @@ class ScriptedDevice(DeviceBackend):
     def recover(self):
         """Counts the calls."""
         self.recovered += 1
+
+
+class FreeHandle(ScriptedDevice):
+    """A handle that stands in the world, whatever it is asked to show."""
+
+    is_placed = True
+    shows_force = False
+    uses_slopes = False

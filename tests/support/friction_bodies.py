@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-from contact_samples import box, hull, spike
+from contact_samples import box, hull, join_hulls, spike
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
 
 
-def union(pieces: Sequence[_core.ConvexPieces]) -> _core.ConvexPieces:
-    """One body of several convex pieces that do not meet."""
-    vertices = np.vstack([piece.vertices for piece in pieces])
-    offsets = np.cumsum([0] + [len(piece.vertices) for piece in pieces[:-1]])
-    triangles = np.vstack(
-        [p.triangles + o for p, o in zip(pieces, offsets, strict=True)]
-    ).astype(np.int32)
-    return _core.decompose_surface(
-        vertices, triangles, np.ones(len(triangles), dtype=np.uint8)
-    )
-
-
 def sled(tips: object) -> _core.ConvexPieces:
     """A tool that stands on slender feet, whose tips are at (n, 3) points, m."""
-    return union([spike(tip) for tip in np.atleast_2d(tips)])
+    return join_hulls(*map(spike, np.atleast_2d(tips)))
 
 
 def floor(size: object = (1.0, 1.0, 0.1)) -> _core.ConvexPieces:
@@ -48,4 +34,4 @@ def burr(
             (plates, box([6e-3, 6e-3, 2e-3], [0, 0, -1e-3])),
         ):
             pieces.append(hull(body.vertices @ R.T + place))
-    return union(spikes), union(plates)
+    return join_hulls(*spikes), join_hulls(*plates)

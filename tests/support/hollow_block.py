@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from drake_haptics import _core
-
 RADIUS_M, HALF_WIDTH_M, NUM_FACETS = 0.03, 0.015, 8
 
 _angles = np.linspace(-1, 1, NUM_FACETS + 1) * np.arcsin(HALF_WIDTH_M / RADIUS_M)
@@ -24,15 +22,6 @@ def planes():
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     corners = np.column_stack([EDGES_X, 0 * EDGES_X, height(EDGES_X)])[:-1]
     return normals, np.einsum("ij,ij->i", normals, corners)
-
-
-def decomposed(V, F):
-    """The pieces of a solid."""
-    return _core.decompose_surface(
-        np.ascontiguousarray(V, float),
-        np.ascontiguousarray(F, np.int32),
-        np.ones(len(F), np.uint8),
-    )
 
 
 def swept(top, bottom=-0.02, half_width=0.02):

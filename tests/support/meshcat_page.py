@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,6 +9,7 @@ import umsgpack
 import websocket
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
+from waiting import wait_until
 
 BOUND_S = 120.0
 
@@ -23,7 +22,7 @@ class MeshcatPage:
         self._before = meshcat.GetNumActiveConnections()
         self._gamepads = 0
         self._socket = websocket.create_connection(meshcat.ws_url(), timeout=BOUND_S)
-        self._wait(lambda: meshcat.GetNumActiveConnections() > self._before)
+        wait_until(lambda: meshcat.GetNumActiveConnections() > self._before)
 
     def __enter__(self) -> MeshcatPage:
         """Nothing more to open."""
@@ -32,7 +31,7 @@ class MeshcatPage:
     def __exit__(self, *_: object) -> None:
         """Goes away."""
         self._socket.close()
-        self._wait(lambda: self._meshcat.GetNumActiveConnections() <= self._before)
+        wait_until(lambda: self._meshcat.GetNumActiveConnections() <= self._before)
 
     def send_gamepad(
         self, axes: list[float], buttons: list[float], index: int = 0
@@ -40,7 +39,7 @@ class MeshcatPage:
         """Sends the state of sticks and buttons, and waits until Meshcat knows."""
         gamepad = {"index": index, "button_values": buttons, "axes": axes}
         self._send(type="gamepad", name="", gamepad=gamepad)
-        self._wait(
+        wait_until(
             lambda: (
                 self._meshcat.GetGamepad().axes == axes
                 and self._meshcat.GetGamepad().button_values == buttons
@@ -50,7 +49,7 @@ class MeshcatPage:
     def send_slider(self, name: str, value: float) -> None:
         """Moves a slider, and waits until Meshcat knows."""
         self._send(type="slider", name=name, value=value)
-        self._wait(
+        wait_until(
             lambda: np.array_equal(
                 self._meshcat.GetSliderValue(name), value, equal_nan=True
             )
@@ -60,7 +59,7 @@ class MeshcatPage:
         """Clicks a button, and waits until Meshcat knows."""
         clicks = self._meshcat.GetButtonClicks(name)
         self._send(type="button", name=name)
-        self._wait(lambda: self._meshcat.GetButtonClicks(name) > clicks)
+        wait_until(lambda: self._meshcat.GetButtonClicks(name) > clicks)
 
     def send_drag(self, path: str, anchor: list[float], target: list[float]) -> None:
         """Drags an object by a point of it, m, and waits until Meshcat knows.
@@ -85,7 +84,7 @@ class MeshcatPage:
             X = self._meshcat.GetTrackedCameraPose()
             return X is not None and X.IsNearlyEqualTo(X_WC, 1e-9)
 
-        self._wait(known)
+        wait_until(known)
 
     def send_camera_numbers(self, elements: list[float]) -> None:
         """Sends the camera's matrix, column by column."""
@@ -95,11 +94,3 @@ class MeshcatPage:
 
     def _send(self, **message: Any) -> None:
         self._socket.send_binary(umsgpack.packb(message))
-
-    @staticmethod
-    def _wait(done: Callable[[], bool]) -> None:
-        end = time.monotonic() + BOUND_S
-        while not done():
-            if time.monotonic() > end:
-                raise TimeoutError("Meshcat did not take the message")
-            time.sleep(0.005)

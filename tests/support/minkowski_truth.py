@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import ConvexHull
+from surface_distance import distances
 
 
 def place(points: np.ndarray, X: np.ndarray) -> np.ndarray:
@@ -16,28 +17,6 @@ def support_gap(a_W: np.ndarray, b_W: np.ndarray, n_W: np.ndarray) -> float:
     return float((a_W @ n_W).min() - (b_W @ n_W).max())
 
 
-def distance_to_triangle(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
-    """Distance of the origin to a triangle, by its planes, lines and points."""
-    normal = np.cross(q - p, r - p)
-    area = np.linalg.norm(normal)
-    candidates = [np.linalg.norm(v) for v in (p, q, r)]
-    for u, v in ((p, q), (q, r), (r, p)):
-        d = v - u
-        length_squared = d @ d
-        if length_squared > 0:
-            s = np.clip(-(u @ d) / length_squared, 0.0, 1.0)
-            candidates.append(np.linalg.norm(u + s * d))
-    if area > 0:
-        n = normal / area
-        foot = n * (n @ p)
-        sides = [
-            np.dot(n, np.cross(v - u, foot - u)) for u, v in ((p, q), (q, r), (r, p))
-        ]
-        if min(sides) >= 0:
-            candidates.append(abs(n @ p))
-    return float(min(candidates))
-
-
 def signed_distance(a_W: np.ndarray, b_W: np.ndarray) -> float:
     """Exact signed distance of two hulls whose difference is full-dimensional."""
     difference = (a_W[:, None, :] - b_W[None, :, :]).reshape(-1, 3)
@@ -45,7 +24,7 @@ def signed_distance(a_W: np.ndarray, b_W: np.ndarray) -> float:
     offsets = hull.equations[:, 3]  # the origin is inside where all are negative
     if (offsets <= 0).all():
         return float(offsets.max())
-    return min(distance_to_triangle(*difference[s]) for s in hull.simplices)
+    return float(distances(np.zeros((1, 3)), difference, hull.simplices)[0])
 
 
 def locally_deepest(a_W: np.ndarray, b_W: np.ndarray, n_W: np.ndarray) -> bool:

@@ -6,15 +6,11 @@ The handle begins 50 mm above the origin of its base. As soon as a host has enab
 it sinks to 10 mm, whatever the force, and stays. At SIGUSR1 it rises to 19.5 mm.
 """
 
-import json
 import signal
 import sys
-from pathlib import Path
 
 import numpy as np
-
-from drake_haptics.common.real_time import stop_on_signals
-from drake_haptics.device.driver import DeviceDriver
+from scripted_driver import serve
 
 HIGH_M, LOW_M, GENTLE_M = 0.05, 0.010, 0.0195
 SPEED_M_PER_S, TICK_S = 0.05, 1e-3
@@ -43,24 +39,7 @@ class PressingArm:
         return X_BH, V_BH
 
 
-def main():
-    """Serves until it is told to end."""
-    arm = PressingArm()
-    driver = DeviceDriver(
-        arm,
-        max_force_N=8.5,
-        max_torque_Nm=0.188,
-        max_ttl_s=0.5,
-        rate_hz=1.0 / TICK_S,
-        bind="127.0.0.1",
-        port=0,
-    )
-    signal.signal(signal.SIGUSR1, arm.rise)
-    print(f"udp://127.0.0.1:{driver.address[1]}", flush=True)
-    with stop_on_signals(driver.stop):
-        driver.run()
-    Path(sys.argv[1]).write_text(json.dumps(driver.to_dict()))
-
-
 if __name__ == "__main__":
-    main()
+    pressing = PressingArm()
+    signal.signal(signal.SIGUSR1, pressing.rise)
+    serve(pressing, sys.argv[1], max_ttl_s=0.5)

@@ -53,25 +53,23 @@ class ScriptedArm:
         return time.monotonic_ns() - (10**9 if back else 0)
 
 
-def main():
-    """Serves until it is told to end."""
-    json_file, trouble = Path(sys.argv[1]), sys.argv[2]
-    arm = ScriptedArm(trouble)
+def serve(arm, json_file, **options):
+    """Drives an arm until it is told to end; then writes its figures."""
     driver = DeviceDriver(
         arm,
         max_force_N=8.5,
         max_torque_Nm=0.188,
-        max_ttl_s=1.0,
         rate_hz=1000.0,
         bind="127.0.0.1",
         port=0,
-        clock_ns=arm.read_clock,
+        **options,
     )
     print(f"udp://127.0.0.1:{driver.address[1]}", flush=True)
     with stop_on_signals(driver.stop):
         driver.run()
-    json_file.write_text(json.dumps(driver.to_dict()))
+    Path(json_file).write_text(json.dumps(driver.to_dict()))
 
 
 if __name__ == "__main__":
-    main()
+    scripted = ScriptedArm(sys.argv[2])
+    serve(scripted, sys.argv[1], max_ttl_s=1.0, clock_ns=scripted.read_clock)

@@ -8,8 +8,9 @@ import numpy as np
 import trimesh
 from box_scenes import write_scene
 from degenerate_scenes import MASS_KG, PERIOD_S, Run, record
+from fake_device import FreeHandle, make_reading
 
-from drake_haptics.device.backend import DeviceBackend, DeviceReading
+from drake_haptics.device.backend import DeviceReading
 from drake_haptics.scene.schema import ContactParameters, Scene, Waypoint
 
 PITCH_M = 2e-3  # and lead
@@ -99,40 +100,22 @@ def make_nut(turns: int, play_m: float = PLAY_M) -> trimesh.Trimesh:
     return trimesh.Trimesh(points, triangles[:, ::-1], process=True)
 
 
-class Turner(DeviceBackend):
+class Turner(FreeHandle):
     """A handle that is turned about the nut's axis and stays at its height."""
 
-    is_placed = True
-    shows_force = False
-
     def __init__(self, turns: float, turns_per_s: float):
+        super().__init__(self._turn)
         self._turns, self._rate = turns, turns_per_s
-        self._reads = 0
 
-    def read(self) -> DeviceReading:
+    def _turn(self, call: int) -> DeviceReading:
         """The next angle; at first, and at the end, it rests."""
-        self._reads += 1
-        angle = 2 * np.pi * min(self._turns, self._rate * self._elapsed_s)
-        moves = 0 < self._elapsed_s < self._turns / self._rate
-        w = 2 * np.pi * self._rate * moves
-        half = angle / 2
-        return DeviceReading(
-            sequence=self._reads,
-            time_s=PERIOD_S * self._reads,
-            X_BH=np.array([np.cos(half), 0, 0, np.sin(half), 0, 0, -PITCH_M]),
-            V_BH=np.array([0, 0, w, 0, 0, 0.0]),
-            F_Ho_B=np.zeros(6),
-        )
-
-    @property
-    def _elapsed_s(self) -> float:
-        return max(0.0, self._reads * PERIOD_S - TURNER_WAIT_S)
-
-    def write(self, command: object) -> None:
-        """Shows nothing."""
-
-    def close(self) -> None:
-        """Has nothing to close."""
+        elapsed_s = max(0.0, call * PERIOD_S - TURNER_WAIT_S)
+        half = np.pi * min(self._turns, self._rate * elapsed_s)
+        wxyz = (np.cos(half), 0, 0, np.sin(half))
+        reading = make_reading(call, position=(0, 0, -PITCH_M), wxyz=wxyz)
+        if 0 < elapsed_s < self._turns / self._rate:
+            reading.V_BH[2] = 2 * np.pi * self._rate
+        return reading
 
 
 def make_thread_scene(contact: ContactParameters, folder: Path) -> Scene:

@@ -65,19 +65,6 @@ def place(
     return Body(shape, X, np.asarray(V_SB, float), **material)
 
 
-def join_hulls(*bodies: _core.ConvexPieces) -> _core.ConvexPieces:
-    """Returns convex solids as one body."""
-    starts = np.cumsum([0, *(len(b.vertices) for b in bodies)])[:-1]
-    triangles = np.vstack(
-        [b.triangles + s for b, s in zip(bodies, starts, strict=True)]
-    ).astype(np.int32)
-    return _core.decompose_surface(
-        np.vstack([b.vertices for b in bodies]),
-        triangles,
-        np.ones(len(triangles), dtype=np.uint8),
-    )
-
-
 @dataclass(frozen=True)
 class Wrenches:
     """The chain's answers, in S: [torque; force], N·m and N.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hollow_block import EDGES_X, decomposed, height, hollow_block, planes, spike, swept
+from contact_samples import decomposed
+from hollow_block import EDGES_X, height, hollow_block, planes, spike, swept
 from scipy.spatial import ConvexHull
 
 from drake_haptics import _core
