@@ -1,8 +1,11 @@
 """Devices behind LCM messages, and a host's loop, as diagrams."""
 
 import numpy as np
+from diagram_parts import read_output
 from one_axis_device import make_one_axis_device
+from pydrake.lcm import DrakeLcm
 from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.lcm import (
     LcmInterfaceSystem,
     LcmPublisherSystem,
@@ -10,7 +13,7 @@ from pydrake.systems.lcm import (
 )
 from pydrake.systems.primitives import AffineSystem
 from twin_rig import PERIOD as PERIOD_S
-from twin_rig import PRESET, X_WH
+from twin_rig import PRESET, X_WH, make_simulator
 
 from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
@@ -93,3 +96,67 @@ def add_host(builder, lcm, law):
 def make_axis():
     """A device that moves along x only: 0.1 kg with a damper of 5 N·s/m."""
     return make_one_axis_device(0.1, 5.0)
+
+
+class Gate:
+    """A device's side alone; the test is the host."""
+
+    def __init__(self):
+        builder, self.lcm = DiagramBuilder(), DrakeLcm("memq://")
+        self.axis = make_axis()
+        self.receiver = add_device(builder, self.lcm, self.axis)
+        self.simulator = make_simulator(builder.Build())
+        self.statuses = []
+        self.lcm.Subscribe(
+            "HAPTIC_STATUS",
+            lambda data: self.statuses.append(lcmt_haptic_status.decode(data)),
+        )
+        self.sequence = self.ticks = 0
+        self.simulator.Initialize()
+
+    def make_command(self, force, **fields):
+        """The bytes of the next command, for a force along x."""
+        self.sequence += 1
+        command = {
+            "session": 7,
+            "sequence": self.sequence,
+            "time_to_live": 50_000,
+            "enable": True,
+            "wrench": (0.0, 0.0, 0.0, force, 0.0, 0.0),
+        } | fields
+        return lcmt_haptic_command(**command).encode()
+
+    def tick(self, force=None, *packets, **fields):
+        """A tick after a command for a force, and other packets. Returns F_Ho_B."""
+        if force is not None:
+            packets = (self.make_command(force, **fields), *packets)
+        for packet in packets:
+            self.lcm.Publish("HAPTIC_COMMAND", packet)
+        self.lcm.HandleSubscriptions(0)
+        # Between two events, where round-off cannot tell on which side of one.
+        self.ticks += 1
+        self.simulator.AdvanceTo((self.ticks + 0.5) * PERIOD_S)
+        self.lcm.HandleSubscriptions(0)
+        return self.get_status().F_Ho_B
+
+    def start(self, force=1.0, ticks=300):
+        """Releases, then asks for a force until it is shown."""
+        self.tick(0.0, enable=False)
+        for _ in range(ticks):
+            self.tick(force)
+
+    def get_status(self):
+        """What the gate has decided."""
+        return read_output(self.receiver, "gate_status", self.simulator.get_context())
+
+    @property
+    def state(self):
+        """Gate and fault."""
+        status = self.get_status()
+        return status.state, status.fault
+
+    def set_velocity(self, value):
+        """Throws the handle along x."""
+        axis = self.axis.GetSubsystemByName("axis")
+        context = self.simulator.get_mutable_context()
+        axis.GetMyMutableContextFromRoot(context).SetContinuousState([0.0, value])

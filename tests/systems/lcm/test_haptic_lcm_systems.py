@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from diagram_parts import read_output
 from lcm_rig import (
     MAX_FORCE_N,
     PERIOD_S,
+    Gate,
     add_device,
     add_host,
     add_lcm,
     make_arm,
-    make_axis,
     make_spring,
 )
 from pydrake.lcm import DrakeLcm
@@ -22,10 +23,7 @@ from twin_rig import make_simulator
 
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.device.gate import GateStatus
-from drake_haptics.device.lcm.haptic_messages import (
-    lcmt_haptic_command,
-    lcmt_haptic_status,
-)
+from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
 from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
 from drake_haptics.systems.lcm.haptic_command_sender import HapticCommandSender
 from drake_haptics.systems.lcm.haptic_status_receiver import HapticStatusReceiver
@@ -41,12 +39,11 @@ def make_receiver():
 def calc_motion(diagram, arm, duration_s=1.0):
     """The handle's poses at the ticks, by tick."""
     simulator = make_simulator(diagram)
-    pose = arm.GetOutputPort("X_WH")
     poses = {}
 
     def look(root):
         tick = round(root.get_time() / PERIOD_S)
-        poses[tick] = pose.Eval(arm.GetMyContextFromRoot(root)).copy()
+        poses[tick] = read_output(arm, "X_WH", root).copy()
 
     simulator.set_monitor(look)
     simulator.AdvanceTo(duration_s)
@@ -60,8 +57,7 @@ def test_the_loop_over_messages_is_the_direct_one_two_samples_later():
     gate = add_device(builder, lcm, arm)
     add_host(builder, lcm, make_spring())
     through_lcm, simulator = calc_motion(builder.Build(), arm)
-    context = gate.GetMyContextFromRoot(simulator.get_context())
-    status = gate.GetOutputPort("gate_status").Eval(context)
+    status = read_output(gate, "gate_status", simulator.get_context())
     assert (status.state, status.rejected) == (GateState.ACTIVE, 0)
     assert status.F_Ho_B[5] == pytest.approx(1.47, abs=0.02)
     differences = []
@@ -77,65 +73,6 @@ def test_the_loop_over_messages_is_the_direct_one_two_samples_later():
         differences.append(np.abs(through_lcm - direct).max())
     assert differences[1] == 0.0
     assert min(differences[0], differences[2]) > 1e-5
-
-
-class Gate:
-    """A device's side alone; the test is the host."""
-
-    def __init__(self):
-        builder, self.lcm = DiagramBuilder(), DrakeLcm("memq://")
-        self.axis = make_axis()
-        self.receiver = add_device(builder, self.lcm, self.axis)
-        self.simulator = make_simulator(builder.Build())
-        self.statuses = []
-        self.lcm.Subscribe(
-            "HAPTIC_STATUS",
-            lambda data: self.statuses.append(lcmt_haptic_status.decode(data)),
-        )
-        self.sequence = self.ticks = 0
-        self.simulator.Initialize()
-
-    def tick(self, force=None, **fields):
-        """A tick; with a force, after a command for it along x. Returns F_Ho_B."""
-        if force is not None:
-            self.sequence += 1
-            command = {
-                "session": 7,
-                "sequence": self.sequence,
-                "time_to_live": 50_000,
-                "enable": True,
-                "wrench": (0.0, 0.0, 0.0, force, 0.0, 0.0),
-            } | fields
-            self.lcm.Publish("HAPTIC_COMMAND", lcmt_haptic_command(**command).encode())
-        self.lcm.HandleSubscriptions(0)
-        # Between two events, where round-off cannot tell on which side of one.
-        self.ticks += 1
-        self.simulator.AdvanceTo((self.ticks + 0.5) * PERIOD_S)
-        self.lcm.HandleSubscriptions(0)
-        return self.get_status().F_Ho_B
-
-    def start(self, force=1.0, ticks=300):
-        """Releases, then asks for a force until it is shown."""
-        self.tick(0.0, enable=False)
-        for _ in range(ticks):
-            self.tick(force)
-
-    def get_status(self):
-        """What the gate has decided."""
-        context = self.receiver.GetMyContextFromRoot(self.simulator.get_context())
-        return self.receiver.GetOutputPort("gate_status").Eval(context)
-
-    @property
-    def state(self):
-        """Gate and fault."""
-        status = self.get_status()
-        return status.state, status.fault
-
-    def set_velocity(self, value):
-        """Throws the handle along x."""
-        axis = self.axis.GetSubsystemByName("axis")
-        context = self.simulator.get_mutable_context()
-        axis.GetMyMutableContextFromRoot(context).SetContinuousState([0.0, value])
 
 
 @pytest.fixture
