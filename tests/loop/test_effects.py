@@ -122,29 +122,36 @@ def test_braking_looks_further_but_contact_does_not_push_there(tmp_path):
         np.testing.assert_array_equal(F, np.zeros(6))
 
 
+def build_on_two_plates(folder, contact, *materials):
+    """Yields diagrams of a tool 1 mm over two plates at one place, the second of each.
+
+    Half of the force comes from each plate.
+    """
+    scene = over_a_plate(folder, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
+    (plate,) = scene.environment
+    scene.contact = contact
+    for material in materials:
+        second = replace(plate, name="second", material=material)
+        scene.environment = [plate, second]
+        yield BuildHapticDiagram(scene)
+
+
 def test_each_object_pushes_with_its_own_stiffness(tmp_path):
-    # Two plates at one place: half of the force comes from each.
-    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
-    second = replace(scene.environment[0], name="second")
-    scene.contact = ContactParameters(tolerance_m=2e-3, stiffness_N_per_m=500.0)
+    contact = ContactParameters(tolerance_m=2e-3, stiffness_N_per_m=500.0)
+    materials = Material(), Material(stiffness_N_per_m=1500.0)
     pushes = []
-    for material in (Material(), Material(stiffness_N_per_m=1500.0)):
-        scene.environment = [scene.environment[0], replace(second, material=material)]
-        haptic = BuildHapticDiagram(scene)
+    for haptic in build_on_two_plates(tmp_path, contact, *materials):
         root = haptic.diagram.CreateDefaultContext()
         pushes.append(read_output(haptic.loop.penalty_force, "F_To_W", root)[5])
     np.testing.assert_allclose(pushes[1], 2.0 * pushes[0], rtol=1e-9)
 
 
 def test_each_object_damps_with_its_own_damping(tmp_path):
-    # Two plates at one place share the damper: b₁/2 + b₂/2 of the speed of approach.
-    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
-    second = replace(scene.environment[0], name="second")
-    scene.contact = ContactParameters(tolerance_m=2e-3, damping_Ns_per_m=4.0)
+    # They share the damper: b₁/2 + b₂/2 of the speed of approach.
+    contact = ContactParameters(tolerance_m=2e-3, damping_Ns_per_m=4.0)
+    materials = Material(), Material(damping_Ns_per_m=20.0)
     damped = []
-    for material in (Material(), Material(damping_Ns_per_m=20.0)):
-        scene.environment = [scene.environment[0], replace(second, material=material)]
-        haptic = BuildHapticDiagram(scene)
+    for haptic in build_on_two_plates(tmp_path, contact, *materials):
         force = haptic.loop.penalty_force
         root = haptic.diagram.CreateDefaultContext()
         context = force.GetMyMutableContextFromRoot(root)

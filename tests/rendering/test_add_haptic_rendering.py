@@ -5,15 +5,12 @@ import warnings
 import numpy as np
 import pytest
 import trimesh
-from plant_scenes import PLANTS, G, PlantScene, over_a_slab
-from pydrake.common.value import Value
+from plant_scenes import PLANTS, G, PlantScene, make_push, over_a_slab
 from pydrake.geometry import Box, Cylinder, Mesh, Role, SceneGraph, Sphere
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.multibody.math import SpatialForce
-from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.framework import DiagramBuilder
-from pydrake.systems.primitives import ConstantValueSource
 
 from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import (
@@ -142,13 +139,8 @@ def test_a_hole_guides_a_peg_that_is_pressed_aside(tmp_path):
 
 def push(scene, body, f):
     """Connects a force f (3,) N on a body, as a user would."""
-    force = ExternallyAppliedSpatialForce()
-    force.body_index = body.index()
-    force.F_Bq_W = SpatialForce(np.zeros(3), f)
-    source = scene.builder.AddSystem(ConstantValueSource(Value([force])))
-    scene.builder.Connect(
-        source.get_output_port(), scene.plant.get_applied_spatial_force_input_port()
-    )
+    port = scene.plant.get_applied_spatial_force_input_port()
+    scene.builder.Connect(make_push(scene.builder, body, f), port)
 
 
 def test_a_users_own_force_acts_beside_it():

@@ -3,30 +3,18 @@
 import numpy as np
 import pytest
 from fake_device import ScriptedDevice, make_reading
+from plant_scenes import over_a_slab
+from pydrake.geometry import Box
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
-from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics import AddHapticRendering, make_device_port
+from drake_haptics import make_device_port
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters
 
 LIMITS = {"period_s": 1e-3, "max_force_N": 5.0, "max_torque_Nm": 0.2}
 # The base stands turned in the world.
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.5, 1.0), [0.1, 0.2, 0.3])
-# A cube of 20 mm and 0.1 kg over a floor at z = 0.
-WORLD = """
-<sdf version="1.7"><world name="default">
-<model name="floor"><static>true</static><link name="floor"><collision name="shape">
-  <pose>0 0 -0.01 0 0 0</pose><geometry><box><size>0.2 0.2 0.02</size></box></geometry>
-</collision></link></model>
-<model name="cube"><link name="cube">
-  <inertial><mass>0.1</mass>
-    <inertia><ixx>1e-5</ixx><iyy>1e-5</iyy><izz>1e-5</izz></inertia></inertial>
-  <collision name="shape"><geometry><box><size>0.02 0.02 0.02</size></box></geometry>
-  </collision></link></model></world></sdf>"""
+CUBE = Box(0.02, 0.02, 0.02)
 
 
 def hold_at(z):
@@ -48,21 +36,13 @@ def test_the_handle_is_where_the_device_says():
 def test_a_device_presses_a_body_of_a_plant():
     backend = hold_at(0.008)
     device, X_WH = make_device_port(backend, X_WB, **LIMITS)
-    builder = DiagramBuilder()
-    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 1e-3)
-    Parser(plant).AddModelsFromString(WORLD, "sdf")
-    plant.Finalize()
-    plant.SetDefaultFloatingBaseBodyPose(plant.GetBodyByName("cube"), X_WH)
-    AddHapticRendering(
-        builder,
-        plant,
-        scene_graph,
-        "cube",
+    scene = over_a_slab(CUBE, mass=0.1, side=0.02)
+    scene.render(
         contact=ContactParameters(stiffness_N_per_m=2e3, damping_Ns_per_m=10.0),
         coupling=CouplingParameters(stiffness_N_per_m=400.0, damping_Ns_per_m=1.0),
         device=device,
     )
-    Simulator(builder.Build()).AdvanceTo(1.0)
+    scene.start(tool=X_WH).simulator.AdvanceTo(1.0)
     # The coupling pulls to 8 mm, contact begins at half of the cube and the tolerance,
     # 12 mm; the cube rests where both carry its weight.
     z = (2000 * 0.012 + 400 * 0.008 - 0.1 * 9.81) / (2000 + 400)
@@ -81,13 +61,7 @@ def test_a_limit_that_cannot_be_is_refused():
 
 @pytest.mark.parametrize("period_s", [None, 5e-4])
 def test_a_device_of_another_period_is_refused(period_s):
-    builder = DiagramBuilder()
-    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 1e-3)
-    Parser(plant).AddModelsFromString(WORLD, "sdf")
-    plant.Finalize()
     device, _ = make_device_port(hold_at(0.05), **LIMITS | {"period_s": 3e-3})
     options = {"coupling": CouplingParameters(), "period_s": period_s}
     with pytest.raises(ValueError, match=r"device: its period_s must be .*, is 0.003"):
-        AddHapticRendering(
-            builder, plant, scene_graph, "cube", device=device, **options
-        )
+        over_a_slab(CUBE).render(device=device, **options)

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+from pydrake.common.value import Value
 from pydrake.geometry import Box, SceneGraph, Shape
 from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import (
     AddMultibodyPlant,
     CoulombFriction,
+    ExternallyAppliedSpatialForce,
     MultibodyPlant,
     MultibodyPlantConfig,
 )
 from pydrake.multibody.tree import RigidBody, SpatialInertia
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Context, DiagramBuilder
+from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
+from pydrake.systems.primitives import ConstantValueSource
 
 from drake_haptics import AddHapticRendering
 
@@ -103,6 +107,14 @@ class PlantScene:
     def read(self, system, port: str):
         """Returns an output of a system."""
         return system.GetOutputPort(port).Eval(system.GetMyContextFromRoot(self.root))
+
+
+def make_push(builder: DiagramBuilder, body: RigidBody, f) -> OutputPort:
+    """Returns the output of a source that pushes a body with a force f (3,), N."""
+    force = ExternallyAppliedSpatialForce()
+    force.body_index = body.index()
+    force.F_Bq_W = SpatialForce(np.zeros(3), f)
+    return builder.AddSystem(ConstantValueSource(Value([force]))).get_output_port()
 
 
 def over_a_slab(

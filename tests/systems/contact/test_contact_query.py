@@ -24,12 +24,16 @@ def plate():
     return box_core(0.2, 0.2, 0.02)
 
 
+def make_query(tool, body, X_WO=RigidTransform()):  # noqa: B008
+    """Returns a query of an object at rest, and a Context."""
+    query = ContactQuery(tool, [ContactObject("plate", body, X_WO)], TOLERANCE)
+    return query, query.CreateDefaultContext()
+
+
 @pytest.mark.parametrize("gap", [-3e-3, -1e-4, 1e-4, 1.9e-3])
 def test_a_box_over_a_plate(tool, plate, gap):
-    query = ContactQuery(
-        tool, [ContactObject("plate", plate, RigidTransform([0, 0, 0.5]))], TOLERANCE
-    )
-    contacts = query_at(query, query.CreateDefaultContext(), 0.5 + 0.02 + gap)
+    query, context = make_query(tool, plate, RigidTransform([0, 0, 0.5]))
+    contacts = query_at(query, context, 0.5 + 0.02 + gap)
     assert len(contacts) > 0
     np.testing.assert_allclose(contacts.distance, gap, atol=1e-12)
     np.testing.assert_allclose(contacts.nhat_BA_W[:, 2], 1.0, atol=1e-12)
@@ -37,10 +41,7 @@ def test_a_box_over_a_plate(tool, plate, gap):
 
 
 def test_beyond_the_tolerance_there_is_nothing(tool, plate):
-    query = ContactQuery(
-        tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
-    )
-    assert len(query_at(query, query.CreateDefaultContext(), 0.0221)) == 0
+    assert len(query_at(*make_query(tool, plate), 0.0221)) == 0
 
 
 def test_an_object_that_moves_is_followed(tool, plate):
@@ -56,10 +57,7 @@ def test_an_object_that_moves_is_followed(tool, plate):
 
 
 def test_contexts_do_not_share_what_was_found(tool, plate):
-    query = ContactQuery(
-        tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
-    )
-    first = query.CreateDefaultContext()
+    query, first = make_query(tool, plate)
     second = query.CreateDefaultContext()
     before = query_at(query, first, 0.0195)
     query_at(query, second, 0.0210)
@@ -121,10 +119,7 @@ def test_its_twin_has_the_same_ports_a_hint_and_a_tolerance(tool, plate):
 
 
 def test_its_twin_answers_with_derivatives(tool, plate, tilted):
-    query = ContactQuery(
-        tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
-    )
-    context = query.CreateDefaultContext()
+    query, context = make_query(tool, plate)
     port = query.GetInputPort("X_WT")
     port.FixValue(context, tilted)
     expected = query.GetOutputPort("contacts").Eval(context)
@@ -148,10 +143,7 @@ def test_its_twin_answers_with_derivatives(tool, plate, tilted):
 
 def pressed_through(tool, sheet):
     """A tool pressed into a thin sheet, beyond its middle, and the query."""
-    query = ContactQuery(
-        tool, [ContactObject("sheet", sheet, RigidTransform())], TOLERANCE
-    )
-    context = query.CreateDefaultContext()
+    query, context = make_query(tool, sheet)
     for z in np.linspace(0.012, -0.004, 40):
         contacts = query_at(query, context, z)
     return query, context, contacts
@@ -184,10 +176,7 @@ def test_its_twin_is_a_function_of_its_context(tool):
 
 
 def test_preparing_a_conversion_leaves_the_query_as_it_is(tool, plate):
-    query = ContactQuery(
-        tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
-    )
-    context = query.CreateDefaultContext()
+    query, context = make_query(tool, plate)
     query_at(query, context, 0.0195)
     clone = context.Clone()
     query.prepare_conversion(clone)

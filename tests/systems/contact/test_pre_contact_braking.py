@@ -43,12 +43,17 @@ def fixed(braking, contacts, height, V_WT):
     return context
 
 
-def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
+def come_down(cube, plate, **options):
+    """Returns a braking and a Context: a quarter of the way before a plate."""
     objects = [ContactObject("plate", plate, RigidTransform())]
-    query, braking = ContactQuery(cube, objects, D), make_braking(objects)
+    query, braking = ContactQuery(cube, objects, D), make_braking(objects, **options)
     height = TOUCH + 0.25 * D
     contacts = query_at(query, query.CreateDefaultContext(), height)
-    context = fixed(braking, contacts, height, 0.2 * DOWN)
+    return braking, fixed(braking, contacts, height, 0.2 * DOWN)
+
+
+def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
+    braking, context = come_down(cube, plate)
     model = braking.GetOutputPort("wrench_model").Eval(context)
     np.testing.assert_allclose(model[3:6], [0, 0, 0.75 * B * 0.2], atol=1e-9)
     assert not model[6:42].any()
@@ -56,13 +61,8 @@ def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
 
 
 def test_a_loop_that_sheds_load_brakes_later(cube, plate):
-    objects = [ContactObject("plate", plate, RigidTransform())]
-    query = ContactQuery(cube, objects, D)
-    braking = make_braking(objects, enable_load_shedding=True)
     # Half-way to the surface of half the distance, the profile is at its top.
-    height = TOUCH + 0.25 * D
-    contacts = query_at(query, query.CreateDefaultContext(), height)
-    context = fixed(braking, contacts, height, 0.2 * DOWN)
+    braking, context = come_down(cube, plate, enable_load_shedding=True)
     braking.GetInputPort("load_shedding").FixValue(context, [1.5, 0.5, 0.0])
     model = braking.GetOutputPort("wrench_model").Eval(context)
     np.testing.assert_allclose(model[3:6], [0, 0, B * 0.2], atol=1e-9)
@@ -185,14 +185,10 @@ def test_its_twin_has_the_derivatives_of_poses_and_velocities(seed):
 
 
 def test_contacts_without_derivatives_are_refused(cube, plate):
-    objects = [ContactObject("plate", plate, RigidTransform())]
-    query, braking = ContactQuery(cube, objects, D), make_braking(objects)
-    contacts = query_at(query, query.CreateDefaultContext(), TOUCH + 0.25 * D)
+    braking, context = come_down(cube, plate)
+    contacts = braking.GetInputPort("contacts").Eval(context)
     twin = braking.ToAutoDiffXd()
-    context = twin.CreateDefaultContext()
-    twin.GetInputPort("contacts").FixValue(context, Value[object](contacts))
-    twin.GetInputPort("X_WT").FixValue(context, at_height(TOUCH))
-    twin.GetInputPort("V_WT").FixValue(context, DOWN)
+    context = fixed(twin, contacts, TOUCH, DOWN)
     with pytest.raises(ValueError, match="ContactSet, which carries no derivatives"):
         twin.GetOutputPort("wrench_model").Eval(context)
 

@@ -10,10 +10,9 @@ from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 from slider_device import DAMPING, MASS, PERIOD, make_device
 from twin_check import check_twin
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics._core import CouplingGains
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 
 
 def test_it_shows_a_wrench_from_its_sample_until_the_next():

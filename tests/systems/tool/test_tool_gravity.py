@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from diagram_parts import read_output
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
@@ -77,9 +78,7 @@ def test_a_free_tool_falls_without_turning():
     builder.Connect(gravity.GetOutputPort("wrench_model"), tool.GetInputPort("gravity"))
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(0.0995)
-    V = tool.GetOutputPort("V_WT").Eval(
-        tool.GetMyContextFromRoot(simulator.get_context())
-    )
+    V = read_output(tool, "V_WT", simulator.get_context())
     np.testing.assert_allclose(V, [0, 0, 0, 0, 0, -0.1 * G], atol=1e-9)
 
 
