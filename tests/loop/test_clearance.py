@@ -13,15 +13,13 @@ from cell_mesh import cell_mesh
 from pydrake.math import RigidTransform, RotationMatrix
 from shapes.solids import SOCKET_PLAY_M
 
-from drake_haptics import make_simulator
+from drake_haptics import find_scene, load_scene, make_simulator
 from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.clearance import Clearance, find_clearance, fit_skin
 from drake_haptics.models import FOLDER
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import ContactParameters, Scene, Waypoint
 
 CELL_M = 0.01

@@ -14,13 +14,12 @@ from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics._core import ContactChain
 from drake_haptics.analysis.diagram_systems import find_timings
 from drake_haptics.analysis.sampled_map import SampledMap
 from drake_haptics.loop import add_haptic_loop
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     BrakingParameters,
     Effects,

@@ -3,12 +3,11 @@
 import pytest
 from pydrake.geometry import Meshcat
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device.backend import DeviceError
 from drake_haptics.loop.device_placement import find_device_site, wait_for_reading
 from drake_haptics.loop.open_device import open_device
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 
 
 @pytest.fixture(scope="module")

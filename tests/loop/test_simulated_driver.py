@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop import drivers
 from drake_haptics.loop.drivers import SimulatedDriverArm
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Pose, Waypoint
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 

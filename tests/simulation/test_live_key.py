@@ -2,8 +2,7 @@
 
 from dataclasses import fields, replace
 
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
+from drake_haptics import find_scene, load_scene
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,

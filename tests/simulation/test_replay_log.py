@@ -8,13 +8,12 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from fake_device import ScriptedDevice
 from tick_log_samples import assert_same_bits, make_part
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.outputs import make_log_header
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     BrakingParameters,
     Effects,

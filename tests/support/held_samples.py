@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics.analysis.felt_impedance import calc_felt_impedance
 from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
@@ -15,8 +16,6 @@ from drake_haptics.analysis.passivity import calc_passivity
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits
 from drake_haptics.bounds.held_handle import calc_scene_handle
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 
 
 @cache

@@ -14,11 +14,10 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 from twin_check import differentiate, differentiate_to_one_side
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics.analysis.diagram_systems import find_state_layout, find_timings
 from drake_haptics.analysis.sampled_map import SampledMap, SampledValues, get_state
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.settings import change_scene
 
 # Between looks for contact, s.
