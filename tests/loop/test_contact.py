@@ -26,12 +26,24 @@ def objects(core):
     return [ContactObject(name, core, RigidTransform()) for name in ("soft", "hard")]
 
 
+def add(core, *materials, builder=None, contact=None, effects=None, **options):
+    """Adds the systems of contact with an object of each material, or of one."""
+    materials = materials or (Material(),)
+    return add_contact_systems(
+        builder or DiagramBuilder(),
+        core,
+        objects(core)[: len(materials)],
+        contact or ContactParameters(),
+        effects or Effects(),
+        list(materials),
+        1e-3,
+        **options,
+    )
+
+
 def test_a_material_gives_what_the_contact_does_not(core):
     contact = ContactParameters(stiffness_N_per_m=100.0)
-    materials = [Material(), Material(stiffness_N_per_m=900.0)]
-    found = add_contact_systems(
-        DiagramBuilder(), core, objects(core), contact, Effects(), materials, 1e-3
-    )
+    found = add(core, Material(), Material(stiffness_N_per_m=900.0), contact=contact)
     force = found.penalty_force
     gains = force.get_gains(force.CreateDefaultContext())
     assert gains.stiffness_N_per_m.tolist() == [100.0, 900.0]
@@ -40,15 +52,8 @@ def test_a_material_gives_what_the_contact_does_not(core):
 @pytest.mark.parametrize(("distance", "contacts"), [(1e-3, 0), (6e-3, 1)])
 def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, contacts):
     effects = Effects(braking=BrakingParameters(distance_m=distance))
-    found = add_contact_systems(
-        DiagramBuilder(),
-        core,
-        objects(core)[:1],
-        ContactParameters(tolerance_m=2e-3),
-        effects,
-        [Material()],
-        1e-3,
-    )
+    contact = ContactParameters(tolerance_m=2e-3)
+    found = add(core, contact=contact, effects=effects)
     query = found.contact_query
     context = query.CreateDefaultContext()
     query.GetInputPort("X_WT").FixValue(context, [1, 0, 0, 0, 0, 0, 0.025])
@@ -60,31 +65,15 @@ def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, conta
 
 @pytest.mark.parametrize("query_rate_hz", [None, 250.0])
 def test_a_query_of_several_ticks_is_not_asked_again_by_relief(core, query_rate_hz):
-    found = add_contact_systems(
-        DiagramBuilder(),
-        core,
-        objects(core)[:1],
-        ContactParameters(query_rate_hz=query_rate_hz),
-        Effects(),
-        [Material()],
-        1e-3,
-        enable_load_shedding=True,
-    )
+    contact = ContactParameters(query_rate_hz=query_rate_hz)
+    found = add(core, contact=contact, enable_load_shedding=True)
     assert found.contact_query.HasInputPort("load_shedding") == (query_rate_hz is None)
     assert found.contact_clustering.HasInputPort("load_shedding")
 
 
 def test_inputs_are_connected_by_their_names_once(core):
     builder = DiagramBuilder()
-    found = add_contact_systems(
-        builder,
-        core,
-        objects(core),
-        ContactParameters(),
-        Effects(),
-        [Material()] * 2,
-        1e-3,
-    )
+    found = add(core, Material(), Material(), builder=builder)
     rest, moving = (
         builder.AddSystem(ConstantVectorSource(np.full(6, x))) for x in (0.0, 1.0)
     )

@@ -95,16 +95,19 @@ def test_two_free_bodies_keep_their_momentum(tmp_path):
     np.testing.assert_allclose(momentum(), start, rtol=0, atol=1e-14)
 
 
-def test_a_peg_goes_into_a_hole_that_drakes_hull_would_close(tmp_path):
+def make_peg_and_ring(folder, gravity=G):
+    """Returns a finalized scene of a peg, 2.5 mm narrower than a ring about z."""
     ring = trimesh.creation.annulus(0.0125, 0.04, 0.04, sections=48)
-    ring.export(tmp_path / "ring.obj")
+    ring.export(folder / "ring.obj")
+    scene = PlantScene()
+    scene.add("tool", Cylinder(0.01, 0.06), mass=MASS)
+    scene.add_fixed("block", Mesh(folder / "ring.obj"))
+    return scene.finalize(gravity)
 
+
+def test_a_peg_goes_into_a_hole_that_drakes_hull_would_close(tmp_path):
     def drop(haptic):
-        scene = PlantScene()
-        scene.add("tool", Cylinder(0.01, 0.06), mass=MASS)
-        block = scene.add("block", Mesh(tmp_path / "ring.obj"))
-        scene.plant.WeldFrames(scene.plant.world_frame(), block.body_frame())
-        scene.finalize()
+        scene = make_peg_and_ring(tmp_path)
         if haptic:
             render(scene)
         scene.start(tool=RigidTransform([1e-3, 0.5e-3, 0.055]))
@@ -119,14 +122,8 @@ def test_a_peg_goes_into_a_hole_that_drakes_hull_would_close(tmp_path):
 
 
 def test_a_hole_guides_a_peg_that_is_pressed_aside(tmp_path):
-    ring = trimesh.creation.annulus(0.0125, 0.04, 0.04, sections=48)
-    ring.export(tmp_path / "ring.obj")
-    scene = PlantScene()
-    tool = scene.add("tool", Cylinder(0.01, 0.06), mass=MASS)
-    block = scene.add("block", Mesh(tmp_path / "ring.obj"))
-    scene.plant.WeldFrames(scene.plant.world_frame(), block.body_frame())
-    scene.finalize(gravity=0.0)
-    push(scene, tool, [0.5, 0.0, 0.0])
+    scene = make_peg_and_ring(tmp_path, gravity=0.0)
+    push(scene, [0.5, 0.0, 0.0])
     rendering = render(
         scene, contact=ContactParameters(tolerance_m=5e-4, stiffness_N_per_m=K)
     )
@@ -137,15 +134,16 @@ def test_a_hole_guides_a_peg_that_is_pressed_aside(tmp_path):
     assert scene.pose("tool").translation()[0] == pytest.approx(0.002, abs=6e-4)
 
 
-def push(scene, body, f):
-    """Connects a force f (3,) N on a body, as a user would."""
+def push(scene, f):
+    """Connects a force f (3,) N on the tool, as a user would."""
+    body = scene.plant.GetBodyByName("tool")
     port = scene.plant.get_applied_spatial_force_input_port()
     scene.builder.Connect(make_push(scene.builder, body, f), port)
 
 
 def test_a_users_own_force_acts_beside_it():
     scene = over_a_slab(CUBE)
-    push(scene, scene.plant.GetBodyByName("tool"), [0.0, 0.0, 0.5 * MASS * G])
+    push(scene, [0.0, 0.0, 0.5 * MASS * G])
     render(scene)
     scene.start(tool=RigidTransform([0, 0, REST]))
     scene.simulator.AdvanceTo(1.5)

@@ -10,7 +10,6 @@ import pytest
 from plant_scenes import PLANTS, G, PlantScene, over_a_slab
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform
-from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.analysis import (
     ApplySimulatorConfig,
     GetIntegrationSchemes,
@@ -40,9 +39,7 @@ def throw_at_a_plate(
         accuracy: Of the error control.
     """
     scene = PlantScene(PLANTS["continuous"])
-    plate = scene.plant.AddRigidBody("plate", SpatialInertia.SolidCubeWithDensity(1, 1))
-    scene.touchable(plate, Box(0.2, 0.2, 0.01), RigidTransform([0, 0, -0.005]), "plate")
-    scene.plant.WeldFrames(scene.plant.world_frame(), plate.body_frame())
+    scene.add_fixed("plate", Box(0.2, 0.2, 0.01), RigidTransform([0, 0, -0.005]))
     side = 2.0 * HALF_CUBE_M
     scene.add("cube", Box(side, side, side), side=side)
     scene.finalize(gravity=0.0)

@@ -45,13 +45,6 @@ def rest_on_a_slab(config=PLANTS["sampled"], **options):
     return scene, render(scene, **options)
 
 
-def add_fixed(scene, name, shape, X_WG=None):
-    """Adds a body welded to the world."""
-    body = scene.plant.AddRigidBody(name, SpatialInertia.SolidCubeWithDensity(1, 1))
-    scene.touchable(body, shape, X_WG, name)
-    scene.plant.WeldFrames(scene.plant.world_frame(), body.body_frame())
-
-
 def throw(scene, v, w=(0, 0, 0), name="tool"):
     body = scene.plant.GetBodyByName(name)
     free = scene.plant.GetVelocities(scene.context)
@@ -120,7 +113,7 @@ def hold(scene, rendering, X_WH):
 def test_a_tool_that_is_held_in_a_cup_rests_still(config, shape):
     """Pressed with 5 N into a hollow of facets; the hand feels where the proxy is."""
     scene = PlantScene(config)
-    add_fixed(scene, "cup", Mesh(str(MODELS / "cup.obj")))
+    scene.add_fixed("cup", Mesh(str(MODELS / "cup.obj")))
     scene.add("tool", shape, mass=MASS, side=2 * HALF)
     rendering = render(scene.finalize(), coupling=HELD)
     q_WH = [1, 0, 0, 0, 0.01, 0.005, 0.01]
@@ -145,7 +138,7 @@ def test_nothing_carries_a_body_through_a_thin_wall(config):
     its skin: a row is of first order in rotations.
     """
     scene = PlantScene(config)
-    add_fixed(scene, "plate", Box(0.1, 0.1, 1e-4))
+    scene.add_fixed("plate", Box(0.1, 0.1, 1e-4))
     scene.add("tool", CUBE, mass=MASS, side=2 * HALF)
     rendering = render(scene.finalize(gravity=0.0))
     scene.start(tool=RigidTransform(RollPitchYaw(0.3, 0.2, 0), [0, 0, 0.03]))
@@ -163,7 +156,7 @@ def test_nothing_carries_a_body_through_a_thin_wall(config):
 def test_a_peg_goes_into_its_hole(config):
     """0.1 mm of play, askew by a degree and half a millimeter beside."""
     scene = PlantScene(config)
-    add_fixed(scene, "socket", Mesh(str(MODELS / "socket.obj")))
+    scene.add_fixed("socket", Mesh(str(MODELS / "socket.obj")))
     scene.add("tool", Mesh(str(MODELS / "peg.obj")), mass=0.08, side=0.04)
     tight = ContactParameters(law="constraint", skin_m=8e-5)
     rendering = render(scene.finalize(), contact=tight, coupling=HELD)

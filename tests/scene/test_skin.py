@@ -10,11 +10,10 @@ from contextlib import contextmanager
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from click.testing import CliRunner
-from plant_scenes import PlantScene
+from plant_scenes import over_a_slab
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform
 
-from drake_haptics import AddHapticRendering
 from drake_haptics.cli import endings, main, run_session
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.scene_file import write_scene
@@ -24,6 +23,7 @@ from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 
 HALF = 0.01
+CUBE = Box(2 * HALF, 2 * HALF, 2 * HALF)
 DEEP, SHALLOW = 0.015, 0.003
 
 
@@ -43,17 +43,10 @@ def listening():
 
 def make_plant(tolerance_m=1e-3, **contact):
     """Returns a cube over a slab, whose top is z = 0, and what renders it."""
-    scene = PlantScene()
-    scene.add("tool", Box(2 * HALF, 2 * HALF, 2 * HALF))
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SceneWarning)
-        rendering = AddHapticRendering(
-            scene.builder,
-            scene.plant,
-            scene.scene_graph,
-            "tool",
+        rendering = scene.render(
             contact=ContactParameters(tolerance_m=tolerance_m, **contact),
         )
     return scene, rendering
@@ -83,16 +76,9 @@ def test_a_plant_says_once_that_a_tool_is_deep_in_a_block():
 
 
 def test_a_plant_says_so_where_it_looks_for_contacts_as_far_as_braking_needs():
-    scene = PlantScene()
-    scene.add("tool", Box(2 * HALF, 2 * HALF, 2 * HALF))
-    scene.add_slab()
-    scene.finalize()
+    scene = over_a_slab(CUBE)
     with listening() as said:
-        AddHapticRendering(
-            scene.builder,
-            scene.plant,
-            scene.scene_graph,
-            "tool",
+        scene.render(
             contact=ContactParameters(tolerance_m=1e-3),
             effects=Effects(braking=BrakingParameters(distance_m=0.01)),
         )

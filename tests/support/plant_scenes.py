@@ -57,12 +57,17 @@ class PlantScene:
             body, X_BG or RigidTransform(), shape, name, RUBBER
         )
 
-    def add_slab(self, name: str = "slab") -> RigidBody:
-        """Adds a body welded to the world whose top is z = 0."""
-        slab = self.plant.AddRigidBody(name, SpatialInertia.SolidCubeWithDensity(1, 1))
-        self.touchable(slab, Box(1.0, 1.0, 0.1), RigidTransform([0, 0, -0.05]), name)
-        self.plant.WeldFrames(self.plant.world_frame(), slab.body_frame())
-        return slab
+    def add_fixed(self, name: str, shape: Shape, X_BG=None) -> RigidBody:
+        """Adds a body that is welded to the world."""
+        body = self.plant.AddRigidBody(name, SpatialInertia.SolidCubeWithDensity(1, 1))
+        self.touchable(body, shape, X_BG, name)
+        self.plant.WeldFrames(self.plant.world_frame(), body.body_frame())
+        return body
+
+    def add_slab(self) -> RigidBody:
+        """Adds a slab that is welded to the world; its top is z = 0."""
+        X_BG = RigidTransform([0, 0, -0.05])
+        return self.add_fixed("slab", Box(1.0, 1.0, 0.1), X_BG)
 
     def finalize(self, gravity: float = G) -> PlantScene:
         """Ends the plant."""

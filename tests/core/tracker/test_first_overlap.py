@@ -18,17 +18,10 @@ from pydrake.geometry import Box
 from pydrake.geometry import Mesh as MeshShape
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.math import SpatialVelocity
-from pydrake.multibody.tree import SpatialInertia
 from scipy.spatial.transform import Rotation
 from solid_surface import Overlap, Surface
 
-from drake_haptics import (
-    AddHapticRendering,
-    ContactTracker,
-    SceneTracker,
-    decompose,
-    load_mesh,
-)
+from drake_haptics import ContactTracker, SceneTracker, decompose, load_mesh
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.schema import ContactParameters
 
@@ -194,13 +187,8 @@ def test_a_box_that_skips_the_skin_lands_on_the_floor(tmp_path):
     path.write_text("\n".join([*lines, *(f"f {a} {b} {c}" for a, b, c in F + 1)]))
     scene = PlantScene()
     scene.add("tool", Box(2 * half_m, 2 * half_m, 2 * half_m), mass=mass, side=0.02)
-    body = scene.plant.AddRigidBody("tray", SpatialInertia.SolidCubeWithDensity(1, 1))
-    scene.touchable(body, MeshShape(str(path)), name="tray")
-    scene.plant.WeldFrames(scene.plant.world_frame(), body.body_frame())
-    scene.finalize()
-    rendering = AddHapticRendering(
-        scene.builder, scene.plant, scene.scene_graph, "tool", contact=contact
-    )
+    scene.add_fixed("tray", MeshShape(str(path)))
+    rendering = scene.finalize().render(contact=contact)
     assert rendering.skin_speed_m_per_s < speed
     tilt = RotationMatrix.MakeXRotation(1e-4)
     scene.start(tool=RigidTransform(tilt, [0, 0, FLOOR_M + half_m + start_m]))
