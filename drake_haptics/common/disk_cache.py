@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import os
+import tempfile
 import time
 import uuid
 from collections.abc import Callable
@@ -30,7 +31,10 @@ def cache_folder() -> Path:
     if own:
         return Path(own)
     user = os.environ.get("XDG_CACHE_HOME")
-    return (Path(user) if user else Path.home() / ".cache") / "drake_haptics"
+    try:
+        return (Path(user) if user else Path.home() / ".cache") / "drake_haptics"
+    except RuntimeError:  # a user of a container may have no home
+        return Path(tempfile.gettempdir()) / "drake_haptics"
 
 
 def load_entry(key: str, read: Callable[[Path], _Content]) -> _Content | None:

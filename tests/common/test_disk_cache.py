@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tempfile
 import textwrap
 import time
 from pathlib import Path
@@ -41,6 +42,16 @@ def test_the_folder_follows_the_environment(monkeypatch, tmp_path):
     assert cache_folder() == tmp_path / "x" / "drake_haptics"
     monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path / "y"))
     assert cache_folder() == tmp_path / "y"
+
+
+def test_a_user_without_a_home_has_a_cache(monkeypatch):
+    def find_none():
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("DRAKE_HAPTICS_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(Path, "home", find_none)
+    assert cache_folder() == Path(tempfile.gettempdir()) / "drake_haptics"
 
 
 @pytest.mark.parametrize("method", ["surface", "hull"])
