@@ -89,12 +89,20 @@ class MotionKind:
 
 
 TRANSLATION = MotionKind(
-    *("stiffness_N_per_m", "N/m", "damping_Ns_per_m", "N·s/m"), *("mass_kg", "kg")
+    stiffness="stiffness_N_per_m",
+    stiffness_unit="N/m",
+    damping="damping_Ns_per_m",
+    damping_unit="N·s/m",
+    mass="mass_kg",
+    mass_unit="kg",
 )
 ROTATION = MotionKind(
-    *("rotational_stiffness_Nm_per_rad", "N·m/rad"),
-    *("rotational_damping_Nms_per_rad", "N·m·s/rad"),
-    *("inertia_kgm2", "kg·m²"),
+    stiffness="rotational_stiffness_Nm_per_rad",
+    stiffness_unit="N·m/rad",
+    damping="rotational_damping_Nms_per_rad",
+    damping_unit="N·m·s/rad",
+    mass="inertia_kgm2",
+    mass_unit="kg·m²",
 )
 
 
