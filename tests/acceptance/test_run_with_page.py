@@ -76,7 +76,6 @@ def test_the_mouse_presses_the_tool_against_an_object():
         # The sphere pushes upwards, in the picture.
         assert felt["f"][1] > 0.5
         assert felt["gate"] == "active"
-        assert felt["contacts"] >= 1
         assert "largest" in run.end()
 
 
@@ -86,7 +85,8 @@ def press_down(run):
     while time.monotonic() < end:
         run.say(do="move", by=[0, -0.002, 0])
         frame = run.hear("frame", lambda frame: "f" in frame)
-        if np.linalg.norm(frame["f"]) > 1.0:
+        # The force is that of the tick before, in which the pen may have slipped off.
+        if np.linalg.norm(frame["f"]) > 1.0 and frame["contacts"] >= 1:
             return frame
     raise TimeoutError("nothing was felt")
 
