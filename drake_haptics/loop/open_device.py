@@ -101,10 +101,10 @@ def _open_lcm(
 def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]:
     """Returns host and port of an address."""
     try:
-        port = parts.port or default_port
+        port = default_port if parts.port is None else parts.port
     except ValueError as error:  # The port is not a number, or is too large.
         raise DeviceError(f"device {parts.geturl()!r}: {error}") from error
-    if not parts.hostname or port is None:
+    if not parts.hostname or not port:
         raise DeviceError(
             f"device {parts.geturl()!r}: give"
             f" {'host and port' if default_port is None else 'the host'}, like"
@@ -144,6 +144,8 @@ def _open_mouse(
 
 
 def _require_page(parts: SplitResult, meshcat: Meshcat | None) -> Meshcat:
+    if parts.netloc or parts.path or parts.query or parts.fragment:
+        raise DeviceError(f"device {parts.geturl()!r}: nothing may follow the colon")
     if meshcat is None:
         raise NoPageError(
             f"device {parts.geturl()!r} is moved on a page, and there is none"

@@ -56,6 +56,17 @@ def test_nothing_but_options_follows_the_port_of_a_service(scene):
         open_device("haply://127.0.0.1:1/x?max_force_N=1", scene)
 
 
+def test_no_service_is_at_port_0(scene):
+    with pytest.raises(DeviceError, match=r"'haply://127\.0\.0\.1:0': give the host"):
+        open_device("haply://127.0.0.1:0", scene)
+
+
+@pytest.mark.parametrize("address", ["meshcat:x", "mouse://x", "mouse:?x"])
+def test_nothing_follows_what_is_moved_on_a_page(scene, address):
+    with pytest.raises(DeviceError, match="nothing may follow the colon"):
+        open_device(address, scene, Meshcat())
+
+
 def test_a_replay_needs_a_file(scene):
     with pytest.raises(DeviceError, match=r"like replay:run\.tick"):
         open_device("replay:", scene)
