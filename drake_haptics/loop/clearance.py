@@ -169,6 +169,7 @@ def _find_room(
         [0.0] * 6 + [-np.inf], [size_m / distance_m] * 6 + [1.0], unknowns
     )
     solved = ClpSolver().Solve(program)
+    assert solved.is_success()  # a small enough share is kept anywhere
     x = solved.GetSolution(unknowns)
     x_W = distance_m * (x[:3] - x[3:6])
     share = float(x[6])

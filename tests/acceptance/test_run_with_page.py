@@ -85,7 +85,7 @@ def press_down(run):
     while time.monotonic() < end:
         run.say(do="move", by=[0, -0.002, 0])
         frame = run.hear("frame", lambda frame: "f" in frame)
-        # The force is that of the tick before, in which the pen may have slipped off.
+        # The force is a tick older than the contacts: the pen may have slipped off.
         if np.linalg.norm(frame["f"]) > 1.0 and frame["contacts"] >= 1:
             return frame
     raise TimeoutError("nothing was felt")

@@ -11,7 +11,7 @@ import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -114,15 +114,20 @@ def _read_with_trimesh(path: Path) -> RawMesh:
     data = path.read_bytes()
     if suffix == ".obj":
         data = _plain_obj(data)
-    sha = hashlib.sha256(f"{version('trimesh')} {suffix} ".encode())
-    for content in (Path(__file__).read_bytes(), data):
-        sha.update(content)
-    key = f"triangles-{sha.hexdigest()}"
+    settings = f"{_source_digest()} {version('trimesh')} {suffix} "
+    key = f"triangles-{hashlib.sha256(settings.encode() + data).hexdigest()}"
     raw = load_entry(key, _load_triangles)
     if raw is None:
         raw = _parse(path, io.BytesIO(data))
         store_entry(key, partial(_store_triangles, raw))
     return raw
+
+
+@cache
+def _source_digest() -> str:
+    """Returns a hash of this folder's modules, of which some help to read a file."""
+    sources = sorted(Path(__file__).parent.glob("*.py"))
+    return hashlib.sha256(b"".join(map(Path.read_bytes, sources))).hexdigest()
 
 
 def _load_triangles(entry: Path) -> RawMesh:

@@ -11,6 +11,7 @@ import trimesh
 from mesh_samples import box
 
 from drake_haptics.common.errors import MeshError
+from drake_haptics.geometry.mesh import reader
 from drake_haptics.geometry.mesh.mesh import load_mesh
 
 
@@ -191,6 +192,18 @@ def test_the_second_time_trimesh_is_not_needed(tmp_path, monkeypatch, suffix):
     np.testing.assert_array_equal(first.triangles, second.triangles)
     trimesh.creation.icosphere(subdivisions=1).export(path)
     assert load_in_another_process(path) == (80, True)
+
+
+def test_another_reader_finds_no_entry_of_this_one(tmp_path, monkeypatch):
+    monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / "a.stl"
+    trimesh.creation.box().export(path)
+    load_mesh(path)
+    load_mesh(path)
+    assert len(list((tmp_path / "cache").iterdir())) == 1
+    monkeypatch.setattr(reader, "_source_digest", lambda: "another reader")
+    load_mesh(path)
+    assert len(list((tmp_path / "cache").iterdir())) == 2
 
 
 def test_a_damaged_entry_of_the_cache_is_read_again(tmp_path, monkeypatch):
