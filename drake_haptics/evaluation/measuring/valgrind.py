@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from drake_haptics.common.errors import HapticsError
+from drake_haptics.evaluation.measuring.timing import steady_memory
 
 
 def require_valgrind() -> None:
@@ -86,10 +87,15 @@ def run_callgrind(arguments: Sequence[str], profile: str) -> str:
 
 @contextmanager
 def counted() -> Iterator[None]:
-    """Counts its block, in a program under `count_instructions`."""
-    _switch("on")
-    yield
-    _switch("off")
+    """Counts its block, in a program under `count_instructions`.
+
+    A collection of what the program made before is not counted: whether one falls into
+    the block depends on all that was imported.
+    """
+    with steady_memory():
+        _switch("on")
+        yield
+        _switch("off")
 
 
 def _switch(state: str) -> None:
