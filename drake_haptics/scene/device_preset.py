@@ -14,6 +14,7 @@ from drake_haptics.scene.validation import (
     require,
     require_all_positive,
     require_each,
+    require_length,
     require_none_negative,
 )
 from drake_haptics.scene.yaml_loading import check_keys, load_yaml, make_hint
@@ -183,9 +184,7 @@ def _read(path: Path, version: object) -> DevicePreset:
 
 def _check_values(preset: DevicePreset) -> None:
     """Raises SceneError for values that describe no device."""
-    require(
-        len(preset.workspace_center_m) == 3, "workspace_center_m", "needs three numbers"
-    )
+    require_length(preset, "", "workspace_center_m", 3)
     require_all_positive(preset, "", ["workspace_radius_m", "max_force_N"])
     limits = ["max_torque_Nm", "max_stiffness_N_per_m", "max_damping_Ns_per_m"]
     limits.append("max_rotational_stiffness_Nm_per_rad")

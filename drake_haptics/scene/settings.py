@@ -117,8 +117,8 @@ def _set(place: Any, steps: Sequence[str | int], value: Any, key: str) -> None:
                 return  # What is taken out is not there.
             place[step] = {}
     elif not (isinstance(place, list) and isinstance(step, int) and step < len(place)):
-        size = f" of {len(place)}" if isinstance(place, list) else ""
-        raise SceneError(f"{key}: there is nothing at {step!r}{size}")
+        last = f"; the last is {len(place) - 1}" if isinstance(place, list) else ""
+        raise SceneError(f"{key}: there is nothing at {step!r}{last}")
     if rest:
         _set(place[step], rest, value, key)
     elif value is None:

@@ -85,7 +85,8 @@ def check_values(scene: Scene) -> None:
             "must be of letters, digits and _, and not begin with a digit, since it"
             f" names ports; is {item.name!r}",
         )
-        require(names.count(item.name) == 1, f"{where}.name", "is used twice")
+        is_unique = names.count(item.name) == 1
+        require(is_unique, f"{where}.name", f"is used twice: {item.name!r}")
         require(bool(item.mesh), f"{where}.mesh", "is missing")
         _check_shape(item, where)
         _check_pose(item.pose, f"{where}.pose")
@@ -334,11 +335,7 @@ def _check_effects(effects: Effects) -> None:
         require_none_negative(braking, "effects.braking", ["damping_Ns_per_m"])
         require_all_positive(braking, "effects.braking", ["distance_m"])
     if (gravity := effects.gravity) is not None:
-        require(
-            len(gravity.acceleration_m_per_s2) == 3,
-            "effects.gravity.acceleration_m_per_s2",
-            "needs three numbers",
-        )
+        require_length(gravity, "effects.gravity", "acceleration_m_per_s2", 3)
     if (passivity := effects.passivity) is not None:
         keys = [f.name for f in dataclasses.fields(passivity)]
         require_none_negative(passivity, "effects.passivity", keys)
@@ -379,7 +376,7 @@ def _check_path(path: HandPathParameters) -> None:
 def _check_pose(pose: Any, where: str) -> None:
     """Checks the lengths of a position and a rotation, and how far the position is."""
     for key in ("position_m", "rpy_deg"):
-        require(len(getattr(pose, key)) == 3, f"{where}.{key}", "needs three numbers")
+        require_length(pose, where, key, 3)
     require(
         all(abs(value) <= _FARTHEST_M for value in pose.position_m),
         f"{where}.position_m",
@@ -435,13 +432,20 @@ def require_each(
     if values is None:
         return
     place = join_key(where, key)
-    require(len(values) == count, place, f"needs {count} numbers")
+    require_length(part, where, key, count)
     for i, value in enumerate(values):
         require(
             value > 0.0 or (value == 0.0 and not positive),
             f"{place}[{i}]",
             f"must {'be positive' if positive else 'not be negative'}, is {value}",
         )
+
+
+def require_length(part: Any, where: str, key: str, count: int) -> None:
+    """Raises SceneError unless a list has `count` numbers."""
+    values = getattr(part, key)
+    complaint = f"needs {count} numbers, is {values}"
+    require(len(values) == count, join_key(where, key), complaint)
 
 
 def require(condition: bool, where: str, complaint: str) -> None:

@@ -135,7 +135,7 @@ def test_a_coupling_is_suggested_for_an_arm_of_ones_own(tmp_path):
         ("max_torque_Nm: 0.1", "max_torque_Nm: -1", "max_torque_Nm must not be neg"),
         ("radius_m: 0.1", "radius_m: 0", "workspace_radius_m must be positive"),
         ("-0.08]", "]", "workspace_center_m"),
-        ("-0.08]", "-0.08, 1]", "workspace_center_m needs three numbers"),
+        ("-0.08]", "-0.08, 1]", "workspace_center_m needs 3 numbers, is"),
         ("motors:", "actuated_axes: 5\nmotors:", "actuated_axes must be 3 or 6, is 5"),
         ("motors:", "actuated_axes: 3\nmotors:", "max_torque_Nm must be 0 on 3"),
         ("motors:", "actuated_axes: 6.5\nmotors:", "expected a whole number"),

@@ -71,7 +71,7 @@ def test_files_are_found_from_the_current_folder(scene, tmp_path, monkeypatch):
         ("contact.stiffness_N_per_m=[", "cannot be read as YAML"),
         (
             "environment[3].scale=2",
-            r"environment\[3\].scale: there is nothing at 3 of 1",
+            r"environment\[3\].scale: there is nothing at 3; the last is 0",
         ),
         ("contact[0]=2", "nothing at 0"),
         ("environment.weight=2", "not a key of a scene"),
