@@ -223,7 +223,13 @@ def check_reading(reading: DeviceReading) -> None:
     Raises:
         ValueError: One of them is not an array of its size, or the handle's motion is
             not finite or has no unit quaternion.
+        TypeError: It is not a `DeviceReading`.
     """
+    if not isinstance(reading, DeviceReading):
+        raise TypeError(
+            "`read` of a device must return a DeviceReading or None, is of type"
+            f" {type(reading).__name__}"
+        )
     # No system computes with the wrench that a device reports, so it may be NaN.
     for name, size, finite in (
         ("X_BH", 7, "finite "),

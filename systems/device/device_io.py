@@ -155,8 +155,8 @@ class _Exchange(LeafSystem):
                 reading.gate,
                 reading.fault,
             )
-        except (TypeError, ValueError):
-            # The core does not tell which part of a reading is wrong.
+        except (AttributeError, TypeError, ValueError):
+            # None of these tells which part of a reading is wrong.
             check_reading(reading)
             raise
 

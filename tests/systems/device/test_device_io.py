@@ -166,6 +166,13 @@ def test_a_later_reading_that_is_invalid_is_told_as_the_first_would_be(wrong, wo
         Simulator(diagram).AdvanceTo(PERIOD)
 
 
+def test_a_device_that_returns_something_else_than_a_reading_is_told():
+    backend = ScriptedDevice(lambda _: (np.zeros(7), np.zeros(6)))
+    diagram, _ = make_diagram(backend)
+    with pytest.raises(TypeError, match="DeviceReading or None, is of type tuple"):
+        Simulator(diagram).AdvanceTo(PERIOD)
+
+
 def test_the_wrench_that_a_device_reports_need_not_be_finite():
     reading = replace(make_reading(), F_Ho_B=np.full(6, np.nan))
     check_reading(reading)
