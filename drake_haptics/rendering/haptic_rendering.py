@@ -51,6 +51,7 @@ class HapticRendering(Diagram):
         - V_WH (with a device)
         - F_Ho_W_rendered (with a device)
         - status (with a device)
+        - reading (with a device that is not simulated)
         - friction_force (with friction)
         - energy_J (with passivity control)
         - applied_spatial_force
@@ -69,9 +70,9 @@ class HapticRendering(Diagram):
       moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`. Under
       the constraint law all of them are the proxy's, as in `ConstraintToolStep`.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show on the handle at its origin in
-      the world, N·m and N; `X_WH`, `V_WH`, `F_Ho_W_rendered` and `status` are those of
-      `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
-      `PassivityControl`.
+      the world, N·m and N; `X_WH`, `V_WH`, `F_Ho_W_rendered`, `status` and `reading`
+      are those of `HapticDevice`, `friction_force` that of `StickSlipFriction`,
+      `energy_J` that of `PassivityControl`.
 
     Under the constraint law contact stops a light proxy in the body's place, and a
     handle holds the proxy. The body penetrates by its load divided by the stiffness of

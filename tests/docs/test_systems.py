@@ -21,6 +21,7 @@ from drake_haptics import (
     TickRecorder,
     find_scene,
     load_scene,
+    make_device_port,
     make_log_header,
 )
 from drake_haptics.scene.schema import (
@@ -76,12 +77,17 @@ def systems(tmp_path_factory):
     _, with_device = make_scene(
         effects=effects, coupling=CouplingParameters(), device=make_device()
     )
+    port, _ = make_device_port(
+        ScriptedDevice(), period_s=PERIOD_S, max_force_N=1.0, max_torque_Nm=0.1
+    )
+    _, with_real_device = make_scene(coupling=CouplingParameters(), device=port)
     return [
         *list_systems(BuildHapticDiagram(scene).diagram),
         *list_systems(held.diagram),
         *list_systems(rendering),
         *list_systems(by_proxy),
         with_device,
+        with_real_device,
         *list_systems(
             BuildHapticDiagram(load_scene(find_scene("peg_in_hole"))).diagram
         ),
