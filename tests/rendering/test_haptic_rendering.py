@@ -312,6 +312,18 @@ def test_a_handle_that_is_nowhere_is_refused_at_its_port(lost, size, law):
         scene.simulator.AdvanceTo(0.01)
 
 
+@pytest.mark.parametrize(
+    ("law", "pose"), [("penalty", "X_WT"), ("constraint", "q_W[TH]")]
+)
+def test_of_a_motion_that_has_diverged_the_pose_is_named(law, pose):
+    scene, _ = make_scene(contact=ContactParameters(law=law), config=PLANTS["sampled"])
+    scene.start(tool=RigidTransform([0, 0, 0.3]))
+    state = scene.context.get_mutable_discrete_state(0)
+    state.set_value(np.full(state.size(), np.nan))
+    with pytest.raises(ValueError, match=f"{pose} .* finite"):
+        scene.simulator.AdvanceTo(0.01)
+
+
 def start_with_handle(scene, rendering, speed):
     """Starts with tool and coupling at rest, and the handle, on its slider, moving."""
     scene.start(tool=RigidTransform([0, 0, REST]))
