@@ -54,9 +54,9 @@ def fresh_runs(monkeypatch):
     monkeypatch.setattr(command, "measure_p99", measure)
 
 
-def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
-    arguments = ["accuracy", "sphere_pen", "--quick", *ONLY, "--store", "s.jsonl"]
-    first = call(*arguments, "--json", "-", cwd=tmp_path)
+def test_one_row_from_end_to_end_and_again_from_its_store(invoke):
+    arguments = ["sphere_pen", "--quick", *ONLY, "--store", "s.jsonl"]
+    first = call("accuracy", *arguments, "--json", "-")
     assert first.returncode == 0, first.stderr
     # A machine that is busy makes it last long enough for a word on how far it is.
     word = r"(errors|times): \d of \d(, about \d+ s left)?: +\d+%\n"
@@ -70,28 +70,22 @@ def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
     # of the force, which is below 4 N.
     assert scene.errors.force_rms_N == 0.0
     assert 0.3 < row.errors.force_rms_N <= row.errors.force_max_N < 4.0
-    kept = (tmp_path / "s.jsonl").read_bytes()
-    second = call(*arguments, "--json", "second.json", cwd=tmp_path)
-    assert second.returncode == 0, second.stderr
-    assert (tmp_path / "s.jsonl").read_bytes() == kept
-    assert json.loads((tmp_path / "second.json").read_text()) == json.loads(
-        first.stdout
-    )
+    kept = Path("s.jsonl").read_bytes()
+    second = invoke(*arguments, "--json", "second.json")
+    assert second.exit_code == 0, second.stderr
+    assert Path("s.jsonl").read_bytes() == kept
+    assert json.loads(Path("second.json").read_text()) == json.loads(first.stdout)
     assert "†0.25 mm" in second.stdout and "Wrote" not in second.stdout
 
 
-def test_a_generous_budget_gives_up_nothing_and_its_file_runs(tmp_path):
-    held = call(
-        *["accuracy", "sphere_pen", "--quick", "--budget-us", 1e6],
-        *["--write", "held.yaml"],
-        cwd=tmp_path,
-    )
-    assert held.returncode == 0, held.stderr
+def test_a_generous_budget_gives_up_nothing_and_its_file_runs(invoke):
+    held = invoke("sphere_pen", "--quick", "--budget-us", 1e6, "--write", "held.yaml")
+    assert held.exit_code == 0, held.stderr
     assert "sphere_pen as it is holds 1e+06 µs" in held.stdout
     assert "Nothing is given up." in held.stdout
-    assert [path.name for path in tmp_path.iterdir()] == ["held.yaml"]
-    ran = call("run", "held.yaml", "--headless", "--duration", 0.05, cwd=tmp_path)
-    assert ran.returncode == 0, ran.stderr
+    assert [path.name for path in Path().iterdir()] == ["held.yaml"]
+    ran = command_line.invoke("run", "held.yaml", "--headless", "--duration", 0.05)
+    assert ran.exit_code == 0, ran.stderr
 
 
 def test_the_terminal_shows_the_price_list(invoke, sample):
