@@ -11,6 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from accuracy_samples import make_study
 from click.testing import CliRunner
 from held_samples import analyze_sample
 from markdown_page import PROGRAM, find_blocks, find_span_commands, find_spans
@@ -39,12 +40,14 @@ SNIPPETS = [
 ]
 # What measures for minutes is only begun; its own tests let it end.
 SHORTER = {
-    "accuracy": ["--quick", "--no-peers", "--only", "contact.depth=global"],
+    "accuracy": ["--no-peers"],
     "bench": ["--quick"],
     "paper": ["--quick", "table1"],
 }
 # What takes half a minute: test_cli_stability.py lets it analyze a scene.
 ANALYSIS = "drake_haptics.cli.stability.analyze_scene"
+# What takes minutes: test_cli_accuracy.py lets it measure one.
+STUDY = "drake_haptics.cli.accuracy.run_accuracy_study"
 # Fifteen loops over a motion: evaluation/benchmark/test_loop.py lets them touch.
 EFFORT = "drake_haptics.cli.bench.QUICK"
 # Other programs that sentences name, and that no test here runs.
@@ -67,10 +70,6 @@ def shorten(command):
             arguments += ["--duration", "0.3"]
         if "--headless" not in arguments and "mouse:" not in arguments:
             arguments.append("--headless")
-    elif "--budget-us" in arguments:
-        # So much that nothing has to be tried.
-        arguments[arguments.index("--budget-us") + 1] = "1e6"
-        arguments.append("--quick")
     else:
         arguments += SHORTER.get(arguments[0], [])
     return arguments
@@ -82,14 +81,14 @@ def test_commands_run(commands, tmp_path, monkeypatch):
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(ANALYSIS, lambda *_, **__: analyze_sample())
+    monkeypatch.setattr(STUDY, lambda *_, **__: make_study())
     monkeypatch.setattr(EFFORT, replace(QUICK, loop_s=0.2))
     for command in commands:
         arguments = shorten(command)
         result = CliRunner().invoke(main, arguments)
         assert result.exit_code == 0, result.output
-        for option in ("--record", "--json", "--log", "--write", "--write-scene"):
-            # A budget that holds as it is leaves nothing to write.
-            if option in arguments and "--budget-us" not in arguments:
+        for option in ("--record", "--json", "--log", "--write-scene"):
+            if option in arguments:
                 file = Path(arguments[arguments.index(option) + 1])
                 assert file.stat().st_size > 0
 
