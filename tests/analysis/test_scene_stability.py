@@ -111,8 +111,16 @@ def test_all_of_it_is_strict_json(found):
     assert np.shape(data["map"]["spectral_radius"]) == (3, 3)
 
 
-def test_it_draws_four_panels_with_a_map_and_three_without(found):
-    panels = [axes.get_title() for axes in found.plot().axes]
+@pytest.fixture(scope="module")
+def figure(found):
+    """The sheet, drawn."""
+    figure = found.plot()
+    figure.draw_without_rendering()
+    return figure
+
+
+def test_it_draws_four_panels_with_a_map_and_three_without(found, figure):
+    panels = [axes.get_title() for axes in figure.axes]
     assert len(panels) == 4
     assert any("stable in this contact, of 3 × 3" in title for title in panels)
     assert len(replace(found, map=None).plot().axes) == 3
@@ -136,8 +144,8 @@ def read_meanings(figure):
     return pairs
 
 
-def test_each_color_means_one_thing_in_all_panels(found):
-    pairs = read_meanings(found.plot())
+def test_each_color_means_one_thing_in_all_panels(figure):
+    pairs = read_meanings(figure)
     colors, meanings = zip(*pairs, strict=True)
     assert len(pairs) == len(set(colors)) == len(set(meanings))
     assert set(meanings) >= {
@@ -152,9 +160,7 @@ def test_each_color_means_one_thing_in_all_panels(found):
     }
 
 
-def test_every_legend_is_as_large_as_it_can_be_read_and_within_the_sheet(found):
-    figure = found.plot()
-    figure.draw_without_rendering()
+def test_every_legend_is_as_large_as_it_can_be_read_and_within_the_sheet(figure):
     for axes in figure.axes:
         legend = axes.get_legend()
         assert min(text.get_fontsize() for text in legend.get_texts()) >= 10
@@ -163,9 +169,7 @@ def test_every_legend_is_as_large_as_it_can_be_read_and_within_the_sheet(found):
         assert figure.bbox.y0 <= extent.y0 and extent.y1 <= figure.bbox.y1
 
 
-def test_no_label_is_cut(found):
-    figure = found.plot()
-    figure.draw_without_rendering()
+def test_no_label_is_cut(figure):
     box = figure.bbox
     limits = figure.axes[-1]
     for text in [*limits.texts, *limits.get_yticklabels()]:
