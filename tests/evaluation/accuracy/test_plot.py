@@ -68,8 +68,13 @@ def note_boxes_of(figure, axes):
 
 
 @pytest.fixture(scope="module")
-def figure():
-    return draw_study(STUDY)
+def figures():
+    return {name: draw_study(study) for name, study in STUDIES.items()}
+
+
+@pytest.fixture(scope="module")
+def figure(figures):
+    return figures["usual"]
 
 
 def test_every_row_is_where_its_figures_are(figure):
@@ -87,9 +92,8 @@ def test_every_knob_looks_different(figure):
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_every_knob_is_named_at_a_point_of_its_own(name):
-    figure = draw_study(STUDIES[name])
-    (axes,) = figure.axes
+def test_every_knob_is_named_at_a_point_of_its_own(name, figures):
+    (axes,) = figures[name].axes
     notes = {note.get_text().partition("\n")[0]: note for note in axes.texts}
     for knob, rows in knobs_of(STUDIES[name]):
         note = notes.get(f"knee: {knob}") or notes[knob]
@@ -100,10 +104,9 @@ def test_every_knob_is_named_at_a_point_of_its_own(name):
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_no_name_meets_another_or_hides_a_point(name):
-    figure = draw_study(STUDIES[name])
-    (axes,) = figure.axes
-    boxes, frame = note_boxes_of(figure, axes), axes.get_window_extent()
+def test_no_name_meets_another_or_hides_a_point(name, figures):
+    (axes,) = figures[name].axes
+    boxes, frame = note_boxes_of(figures[name], axes), axes.get_window_extent()
     for box in boxes:
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1
         assert frame.y0 <= box.y0 and box.y1 <= frame.y1
