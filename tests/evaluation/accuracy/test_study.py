@@ -104,13 +104,15 @@ def test_goes_through_json(study):
     assert AccuracyStudy.from_dict(json.loads(text)) == study
 
 
-def test_errors_do_not_depend_on_the_executor(scene, study):
-    with ThreadPoolExecutor(2) as executor:
-        assert _errors(_study(scene, executor=executor)) == _errors(study)
-
-
-@pytest.mark.parametrize("stage", ["errors: 2 of", "times: 3 of"])
-def test_goes_on_after_ctrl_c(scene, study, tmp_path, stage):
+@pytest.mark.parametrize(
+    ("stage", "executor"),
+    [("errors: 2 of", SerialExecutor()), ("times: 3 of", ThreadPoolExecutor(2))],
+    ids=lambda value: type(value).__name__,
+)
+def test_goes_on_after_ctrl_c_whatever_the_executor(
+    scene, study, tmp_path, stage, executor
+):
+    """Errors are the same; at the second stage all are those of the threads."""
     store = tmp_path / "store"
 
     def interrupt(what, share):
@@ -118,7 +120,7 @@ def test_goes_on_after_ctrl_c(scene, study, tmp_path, stage):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        _study(scene, store=store, progress=interrupt)
+        _study(scene, store=store, progress=interrupt, executor=executor)
     told = []
     again = _study(scene, store=store, progress=lambda what, share: told.append(what))
     assert _errors(again) == _errors(study)
