@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from contact_samples import box, hull, pose
-from continuity_rig import CAUSES, JUMP, compare, measure
+from continuity_rig import CAUSES, JUMP, Steps, compare, measure
 from continuity_scenes import SCENES, make_scene
 from continuity_table import PAGE, SHOWN, TITLES, make_steps, row
 from continuity_walk import calc_rotation, calc_turn, walk
@@ -19,6 +21,12 @@ T = 1e-3
 FLOOR = box([0.1, 0.1, 0.02], [0, 0, -0.01])
 # A walk of two episodes.
 STEPS = 4000
+
+
+@cache
+def measure_episodes(key: str) -> dict[str, Steps]:
+    """The steps of a walk of two episodes through each method, for several tests."""
+    return measure(make_scene(key), STEPS)
 
 
 @pytest.mark.parametrize("rotvec", [[0, 0, 0], [1e-4, -2e-4, 3e-4], [0.3, 1.2, -0.4]])
@@ -63,14 +71,14 @@ def test_changes_of_contacts_are_told_apart() -> None:
 
 
 def test_the_octree_jumps_and_the_rig_knows_that_it_was_the_clusters() -> None:
-    found = measure(make_scene("peg-hole-sinking"), STEPS, ("octree",))["octree"]
+    found = measure_episodes("peg-hole-sinking")["octree"]
     of_clusters = found.exceeds & (found.causes == CAUSES.index("clusters"))
     assert of_clusters.any()
     assert found.chain_gain[of_clusters].max() > 10 * JUMP
 
 
 def test_a_box_that_rocks_is_steep_and_does_not_jump() -> None:
-    found = measure(make_scene("flush-sinking"), STEPS, ("shared",))["shared"]
+    found = measure_episodes("flush-sinking")["shared"]
     assert found.ratio.max() > JUMP
     assert (found.causes[found.exceeds] == CAUSES.index("steep")).all()
     assert found.ratio[:, 0].max() < 1 + 1e-6
@@ -80,12 +88,12 @@ def test_a_box_that_rocks_is_steep_and_does_not_jump() -> None:
     "key", ["box-sinking", "edge-sinking", "peg-hole-sinking", "legs-sinking"]
 )
 def test_shared_contacts_multiply_no_change(key: str) -> None:
-    found = measure(make_scene(key), STEPS, ("shared",))["shared"]
+    found = measure_episodes(key)["shared"]
     assert found.chain_gain.max() < 8
 
 
 def test_contacts_that_only_glide_make_no_jump() -> None:
-    found = measure(make_scene("tips-sinking"), STEPS)
+    found = measure_episodes("tips-sinking")
     assert found["octree"].ratio.max() > 3 * JUMP
     # Contacts along one direction are at most 4/3 as stiff as one; the tips press
     # along five, and shares shift.
@@ -109,7 +117,7 @@ def test_the_first_steps_walked_again_change_no_more_than_the_page_tells(
 ) -> None:
     """Both walks begin alike: what the short one meets is in the page's row."""
     lines = [x.strip("| ").split(" | ") for x in PAGE.read_text("utf-8").splitlines()]
-    for method, found in measure(make_scene(key), STEPS).items():
+    for method, found in measure_episodes(key).items():
         [told] = [x for x in lines if x[:2] == [make_scene(key).name, method]]
         by_title = dict(zip(SHOWN[6:], told[6:], strict=True))
         for largest, text in zip(found.ratio.max(axis=0), told[2:6:2], strict=True):
