@@ -6,10 +6,12 @@ import re
 import signal
 import socket
 import subprocess
+from pathlib import Path
 
 import pytest
 import websocket
 from command_line import COMMAND, call, invoke
+from energy_rig import assert_nothing_is_created
 from shapes import SHAPES
 
 from drake_haptics.cli import run_scene, run_session
@@ -28,6 +30,16 @@ SCENES = [
     "sphere_pen",
     "torus_peg",
 ]
+# Energy beyond what sampling explains, of what goes in, at the contact and at the
+# device, of the scenes by the penalty law.
+MADE = {
+    "can_box": (0.0055, 0.0001),
+    "cup_spoon": (0.0356, 0.0012),
+    "hammer_block": (0.0228, 0.0004),
+    "rubbed_sphere": (0.1720, 0.0001),
+    "sphere_pen": (0.0437, 0.0001),
+    "torus_peg": (0.0358, 0.0006),
+}
 
 
 def run_json(folder, *arguments):
@@ -70,6 +82,32 @@ def test_a_run_tells_where_its_energy_went(stats):
     assert list(books)[:5] == ["device", "display", "coupling", "tool", "contact"]
     assert books["device"]["in"] > books["device"]["out"] > 0.0
     assert books["contact"]["in"] > 0.0
+
+
+def test_what_a_scene_creates_is_the_contact_s(request, stats):
+    """A known gap: depth and center of a flush contact are of different points.
+
+    Its wrench is then not quite the gradient of what it stores. All else balances. What
+    is made was measured, and may be a tenth more; see the page on numerics.
+    """
+    scene = request.node.callspec.params["stats"]
+    if scene not in MADE:
+        return
+    books = dict(stats["energy_J"])
+    contact, device = books.pop("contact"), books.pop("device")
+    assert_nothing_is_created(books)
+    at_contact, at_device = MADE[scene]
+    assert contact["beyond"] < 1.1 * at_contact * contact["in"]
+    assert device["beyond"] < 1.1 * at_device * device["in"]
+
+
+def test_the_page_tells_what_scenes_create():
+    page = Path(__file__).parents[2] / "docs" / "verification" / "numerics.md"
+    text = " ".join(page.read_text("utf-8").split())
+    for scene, (at_contact, _) in MADE.items():
+        assert f"{100 * at_contact:.0f} % (`{scene}`)" in text
+    most = max(at_device for _, at_device in MADE.values())
+    assert f"At the device at most {100 * most:.1f} %" in text
 
 
 def test_scenes_penetrate_lightly_that_are_to_show_it_and_no_other(request, stats):

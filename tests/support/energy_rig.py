@@ -1,4 +1,4 @@
-"""Readings of small haptic loops, made up for the ledger of the core."""
+"""Readings of small haptic loops, made up for the ledger; and what books must show."""
 
 from __future__ import annotations
 
@@ -15,6 +15,17 @@ IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0])
 NO_GAINS = _core.CouplingGains(0, 0, 0, 0)
 NO_WRENCH = np.zeros(78)
 X = np.array([0, 0, 0, 1.0, 0, 0])
+
+
+# Far below what can be felt, far above rounding.
+ROUNDING_J = 1e-9
+
+
+def assert_nothing_is_created(books):
+    """Fails if a part of a run's books made more than sampling explains."""
+    for name, part in books.items():
+        assert part["beyond"] < ROUNDING_J, name
+        assert part["created"] <= part["bound"] + ROUNDING_J, name
 
 
 def make_ledger(sources=(), *, gains=NO_GAINS, c=(0, 0, 0), q_HT=IDENTITY):
