@@ -231,9 +231,9 @@ def test_a_port_that_another_program_has_is_named_with_the_address(monkeypatch):
 
 def test_json_to_stdout_is_alone():
     options = ["--headless", "--duration", "0.1", "--json", "-"]
-    process = call("run", "sphere_pen", *options)
-    assert process.returncode == 0, process.stderr
-    assert json.loads(process.stdout)["ticks"] == 100
+    result = invoke("run", "sphere_pen", *options)
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout)["ticks"] == 100
 
 
 def test_ctrl_c_ends_a_run_with_its_figures(tmp_path):
@@ -327,14 +327,13 @@ def test_a_device_that_does_not_answer_is_told_with_its_address():
     assert f"Error: {address}: the device has sent nothing" in result.output
 
 
-def test_a_port_in_use_is_named():
-    with socket.socket() as taken:
-        taken.bind(("localhost", 0))
-        taken.listen()
+def test_a_port_in_use_is_said_with_the_option():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        result = invoke("run", "cup_spoon", "--duration", 0.1, "--port", port)
+        result = invoke("run", "sphere_pen", "--duration", 0.1, "--port", port)
     assert result.exit_code == 1
-    assert str(port) in result.output
+    assert f"port {port} cannot be used" in result.stderr
+    assert "--port" in result.stderr
 
 
 def test_an_unstable_run_ends_with_its_figures_and_a_status_of_its_own(

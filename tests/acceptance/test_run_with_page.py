@@ -4,7 +4,6 @@ import json
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -132,17 +131,3 @@ def test_a_run_that_is_written_is_only_looked_at(tmp_path):
         assert state["error"] == run.hello["locked"]
         assert state["yaml"] == ""
         run.end()
-
-
-def test_a_port_in_use_is_said_with_the_option():
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        done = subprocess.run(
-            [sys.executable, "-c", PROGRAM, "run", "sphere_pen", "--port", str(port)],
-            capture_output=True,
-            text=True,
-            timeout=BOUND_S,
-        )
-    assert done.returncode == 1
-    assert f"port {port} cannot be used" in done.stderr
-    assert "--port" in done.stderr
