@@ -11,7 +11,7 @@ from box_scenes import over_a_plate
 from driver_process import COMMAND, WatchedLink, check_figures, running
 from host_process import hosting
 from pressing_driver import GENTLE_M, LOW_M
-from struct_host import ACTIVE
+from struct_host import ACTIVE, FAULT
 
 PRESSING = Path(__file__).parents[1] / "support" / "pressing_driver.py"
 # The cube touches where its middle is 20 mm high. A quarter of the largest force,
@@ -53,7 +53,8 @@ def test_a_host_that_was_killed_in_contact_begins_gently(tmp_path, scene, driver
                 link, lambda s: s.force_N > 5.0, lambda s: not s.force_N
             )
             host.send_signal(signal.SIGKILL)
-            link.wait_for(lambda s: s.gate != ACTIVE and s.force_N == 0.0)
+            last = link.wait_for(lambda s: s.gate != ACTIVE and s.force_N == 0.0)
+            assert (last.gate, last.fault) == (FAULT, "STALE")
         seen = len(link.states)
         with hosting(link.port, file, scene=scene) as host:
             first = host.press_enter_until(link, lambda s: s.gate == ACTIVE)
