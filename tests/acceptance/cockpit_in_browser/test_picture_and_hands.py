@@ -63,7 +63,7 @@ def look(page):
 def wait_for_still(page):
     """Waits until the picture, which follows the figures, stands still; returns it."""
     # Before anything is drawn it stands still, too. The tool is orange.
-    wait_until(lambda: (look(page) @ [1, 0, -1] > 60).any())
+    wait_until(lambda: (look(page) @ [1, 0, -1] > 60).any(), lambda: time.sleep(0.1))
     seen = [look(page)]
 
     def stands_still():
@@ -80,7 +80,7 @@ def wait_for_change(page, before, is_same=False):
     def count_changes():
         return int((np.abs(look(page) - before).max(axis=2) > 12).sum())
 
-    wait_until(lambda: (count_changes() <= 8) == is_same)
+    wait_until(lambda: (count_changes() <= 8) == is_same, lambda: time.sleep(0.1))
     return count_changes()
 
 
