@@ -34,12 +34,12 @@ def is_felt(state):
 
 
 def test_the_end_of_a_run_leaves_the_device_idle(link, host_file):
-    with hosting(link.port, host_file, "--duration", 3) as host:
+    with hosting(link.port, host_file, "--duration", 2) as host:
         host.wait()
         figures = host.end()
     last = link.wait_for(is_not_active)
     assert last.force_N == 0.0
-    assert figures["duration_s"] == pytest.approx(3.0)
+    assert figures["duration_s"] == pytest.approx(2.0)
     assert figures["contacts"]["max"] >= 1
     assert figures["non_finite_events"] == 0
     assert figures["device"]["received"] > 100

@@ -107,7 +107,7 @@ def test_two_commands_close_a_loop_over_two_processes(tmp_path):
         second[-1] = address.group()
         file = tmp_path / "figures.json"
         subprocess.run(
-            [COMMAND, *second, "--headless", "--duration", "4", "--json", file],
+            [COMMAND, *second, "--headless", "--duration", "2", "--json", file],
             check=True,
             timeout=300,
         )
