@@ -70,14 +70,27 @@ class Score:
 
 
 def ask(
-    query: Query, exact: ExactPair, k: int, passage: Passage, tracked: bool
+    query: Query,
+    exact: ExactPair,
+    k: int,
+    passage: Passage,
+    tracked: bool,
+    judged: dict[tuple[bool, bytes], Verdict],
 ) -> Verdict:
-    """Returns the verdict on a library's answer at pose k, or on its exception."""
+    """Returns the verdict on a library's answer at pose k, or on its exception.
+
+    Answers that were judged at this pose are kept in `judged`: most come again to the
+    last bit.
+    """
     try:
         answer = query(passage.X_WA[k], passage.X_WB[k])
     except (RuntimeError, ValueError) as error:
         return Verdict(np.inf, (f"raises {error}",), False)
-    return judge(exact, answer, tracked)
+    parts = (answer.distance, *answer.nhat_BA_W, *answer.p_WCa, *answer.p_WCb)
+    key = (tracked, np.array(parts).tobytes())
+    if key not in judged:
+        judged[key] = judge(exact, answer, tracked)
+    return judged[key]
 
 
 def score_case(
@@ -95,12 +108,15 @@ def score_case(
                 scores[name].refused += count
         for k in range(count):
             exact = ExactPair(passage.A, passage.B, passage.X_WA[k], passage.X_WB[k])
+            judged: dict[tuple[bool, bytes], Verdict] = {}
             for name, query in queries.items():
                 library = libraries[name]
                 fresh = library.make(passage.A, passage.B) if library.is_warm else None
                 for how, asked in (("in turn", query), ("afresh", fresh)):
                     if asked is not None:
                         where = f"passage {number}, pose {k}, {how}"
-                        verdict = ask(asked, exact, k, passage, library.is_tracked)
+                        verdict = ask(
+                            asked, exact, k, passage, library.is_tracked, judged
+                        )
                         scores[name].add(where, verdict)
     return scores

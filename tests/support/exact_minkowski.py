@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import functools
 import math
-from fractions import Fraction
 
 import numpy as np
 from exact_hull import binary_places, closest_distance, cross, features, integers
@@ -64,9 +63,13 @@ class ExactPair:
 
     def local(self, p_W: np.ndarray) -> np.ndarray:
         """A world position in doubles (3,), m, about `origin`, rounded once."""
-        origin = [Fraction(x, self._per_meter) for x in self.origin]
+        ratios = (float(x).as_integer_ratio() for x in p_W)
+        unit = self._per_meter
         return np.array(
-            [float(Fraction(float(x)) - o) for x, o in zip(p_W, origin, strict=True)]
+            [
+                (n * unit - o * d) / (d * unit)
+                for (n, d), o in zip(ratios, self.origin, strict=True)
+            ]
         )
 
     def gap(self, n: np.ndarray) -> float:
