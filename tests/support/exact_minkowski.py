@@ -125,11 +125,12 @@ class ExactPair:
         n = np.cross(first, second)
         length = np.linalg.norm(n, axis=1)
         product = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
-        for k in np.flatnonzero(length <= _PARALLEL * product):
+        parallel = np.flatnonzero(length <= _PARALLEL * product)
+        for k in parallel:
             exact = self._spanned(k)
-            size = max(abs(x) for x in exact)
+            size = max(map(abs, exact))
             n[k] = [x / size for x in exact] if size else 0.0
-            length[k] = np.linalg.norm(n[k])
+        length[parallel] = np.linalg.norm(n[parallel], axis=1)
         number = np.flatnonzero(length > 0)
         n = n[number] / length[number, None]
         n = np.concatenate([n, -n])
