@@ -1,6 +1,5 @@
 """A whole study: complete, resumed, and never ended by a setting that cannot be."""
 
-import json
 from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 
@@ -10,7 +9,6 @@ from box_scenes import over_a_plate
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy import study as study_module
-from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
@@ -97,11 +95,6 @@ def test_a_setting_that_cannot_be_says_why(study):
     row = study.rows[-1]
     assert row.cost is None and row.errors is None
     assert "tool.decomposition is 'cubes'" in row.failure_reason
-
-
-def test_goes_through_json(study):
-    text = json.dumps(study.to_json_data())
-    assert AccuracyStudy.from_dict(json.loads(text)) == study
 
 
 @pytest.mark.parametrize(
