@@ -147,7 +147,10 @@ class TrackedChain : public SceneTracker {
 
   ContactChain CopyChain() const {
     const Turn turn(&mutex_, Turn::Gil::kHold);
-    return chain_;
+    ContactChain copy = chain_;
+    // The copy counts its changes from zero.
+    if (changes_ != seen_changes_) copy.Forget();
+    return copy;
   }
 
   WrenchModel FindWrench(const ToolState& state) {

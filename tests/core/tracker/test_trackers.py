@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 import pytest
 from mesh_samples import box, l_prism
@@ -13,6 +15,7 @@ from drake_haptics import (
     ConvexPolytope,
     Decomposition,
     SceneTracker,
+    _core,
     decompose,
 )
 from drake_haptics.geometry.mesh.mesh import Mesh
@@ -106,3 +109,12 @@ def test_the_tolerance_is_a_length(bad: object) -> None:
         ContactTracker(CUBE, CUBE, bad)
     with pytest.raises(ValueError, match=r"^tolerance must be "):
         SceneTracker(CUBE, [CUBE], bad)
+
+
+def test_a_copy_of_a_chain_knows_that_an_object_has_moved() -> None:
+    chain = _core.ContactChain(SceneTracker(CUBE, [CUBE], 0.05))
+    q_WT = np.array([1.0, 0, 0, 0, 0, 0, 1.02])
+    assert len(chain.query(q_WT)) == 1
+    chain.set_object_pose(0, RigidTransform([0, 0, -1]))
+    for same in (copy.copy(chain), copy.deepcopy(chain), chain):
+        assert len(same.query(q_WT)) == 0
