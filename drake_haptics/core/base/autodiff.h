@@ -168,6 +168,21 @@ Eigen::Index CommonNumDerivatives(const AutoDiffVector& first,
   return num_derivatives;
 }
 
+/// Replaces the value; a constant gets zero derivatives.
+inline void SetValue(double value, Eigen::Index num_derivatives, AutoDiff* x) {
+  x->value() = value;
+  if (x->derivatives().size() == 0) x->derivatives().setZero(num_derivatives);
+}
+
+/// Replaces the values of a vector's entries likewise.
+template <typename Values, typename Vector>
+void SetValues(const Values& values, Eigen::Index num_derivatives,
+               Vector* vector) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    SetValue(values[i], num_derivatives, &(*vector)[i]);
+  }
+}
+
 /// Returns values and gradients. Constants get zero derivatives.
 template <typename Derived>
 AutoDiffVector ToAutoDiffVector(const Eigen::MatrixBase<Derived>& scalars,

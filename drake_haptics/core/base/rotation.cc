@@ -50,7 +50,7 @@ Pose PoseFromVector(const PoseVector& q, const char* what) {
         " must be finite values [qw qx qy qz x y z] with a quaternion that is "
         "not zero and not huge");
   }
-  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
+  return PoseOfVector(q);
 }
 
 }  // namespace drake_haptics

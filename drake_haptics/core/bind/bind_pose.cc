@@ -142,7 +142,7 @@ PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
   PoseVectorOf<AutoDiff> q;
   for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
   PoseFromVector(ValuesOf(q), name);  // throws unless it is a pose
-  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
+  return PoseOfVector(q);
 }
 
 Pose ToPose(nb::handle value, const char* name) {

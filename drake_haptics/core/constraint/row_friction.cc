@@ -22,11 +22,8 @@ constexpr double kForgotten = 1e-9;
 // Jacobian of the motion of a row's point in its tangent plane by the motion of
 // To.
 Jacobian TangentMotion(const RubbingRow& row) {
-  const Vec3& r = row.r;
   Jacobian J;
-  J << 0, r.z(), -r.y(), 1, 0, 0,  //
-      -r.z(), 0, r.x(), 0, 1, 0,   //
-      r.y(), -r.x(), 0, 0, 0, 1;
+  J << CrossMatrix<double>(-row.r), Mat3::Identity();
   return J - row.n * (row.n.transpose() * J);
 }
 

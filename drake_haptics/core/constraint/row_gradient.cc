@@ -62,13 +62,6 @@ Vec3 PointOfB(const Polytope& B, const Vec3& p, const Vec3& n) {
   return nearest;
 }
 
-template <typename Values, typename Vector>
-void SetValues(const Values& values, Vector* vector) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    (*vector)[i].value() = values[i];
-  }
-}
-
 }  // namespace
 
 ContactOf<AutoDiff> DifferentiatePieces(const PairContact& pair,
@@ -105,7 +98,7 @@ MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
   // slides that remove it.
   const Vec3Of<AutoDiff> gap = moving.p_WCa - moving.p_WCb;
   Vec3Of<AutoDiff> off = gap - n * AutoDiff(n.dot(gap));
-  SetValues(Vec3::Zero(), &off);
+  SetValues(Vec3::Zero(), 0, &off);
   const Mat3 across = Mat3::Identity() - row.n * row.n.transpose();
   Eigen::Matrix<double, 3, Eigen::Dynamic> slides(
       3, along_A.size() + along_B.size());
@@ -141,7 +134,7 @@ MovingRow DifferentiateRow(const ConstraintRow& row, const PiecePair& pieces,
   moving.distance.value() = row.distance;
   const Vec3Of<AutoDiff> arm = moving.p_WCa - tool.X_WB.p;
   moving.a << arm.cross(n), n;
-  SetValues(row.a, &moving.a);
+  SetValues(row.a, 0, &moving.a);
   // The forces on both bodies act on one line along the normal.
   moving.p_WCb = moving.p_WCa - moving.distance * n;
   return moving;

@@ -13,54 +13,18 @@
 namespace drake_haptics {
 namespace {
 
-PoseOf<AutoDiff> PoseOfVector(const PoseVectorOf<AutoDiff>& q) {
-  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
-}
-
-// The pose after a motion of the origin, [θ; t].
-PoseOf<AutoDiff> Moved(const PoseOf<AutoDiff>& X,
-                       const Vec6Of<AutoDiff>& motion) {
-  const Vec3Of<AutoDiff> turn = motion.head<3>();
-  return {RotationExp<AutoDiff>(turn).toRotationMatrix() * X.R,
-          X.p + motion.tail<3>()};
-}
-
 ToolState ValuesOf(const ToolStateOf<AutoDiff>& state) {
   return {drake_haptics::ValuesOf(state.q_WT),
           drake_haptics::ValuesOf(state.V_WT)};
-}
-
-template <typename Vector>
-void SetValues(const Vector& values, Eigen::Index num_derivatives,
-               Eigen::Matrix<AutoDiff, Vector::RowsAtCompileTime, 1>* vector) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    AutoDiff& entry = (*vector)[i];
-    entry.value() = values[i];
-    if (entry.derivatives().size() == 0) {
-      entry.derivatives() = Eigen::VectorXd::Zero(num_derivatives);
-    }
-  }
 }
 
 // ξ + dξ, from A dξ = −dg.
 Vec6Of<AutoDiff> ImplicitMotion(const Vec6& motion, const Mat6& A,
                                 const Vec6Of<AutoDiff>& gradient,
                                 Eigen::Index num_derivatives) {
-  Eigen::MatrixXd dg(6, num_derivatives);
-  for (int i = 0; i < 6; ++i) {
-    const Eigen::VectorXd& row = gradient[i].derivatives();
-    if (row.size() == 0) {
-      dg.row(i).setZero();
-    } else {
-      dg.row(i) = row.transpose();
-    }
-  }
-  const Eigen::MatrixXd change = -A.ldlt().solve(dg);
-  Vec6Of<AutoDiff> moving;
-  for (int i = 0; i < 6; ++i) {
-    moving[i] = AutoDiff(motion[i], change.row(i).transpose());
-  }
-  return moving;
+  const Eigen::MatrixXd dg =
+      ToAutoDiffVector(gradient, num_derivatives).gradient;
+  return ToScalars<6>({motion, -A.ldlt().solve(dg)}, "ξ");
 }
 
 }  // namespace
@@ -92,7 +56,7 @@ class ConstraintStepper::Derivation final : public Follower {
       const PoseOf<AutoDiff> X_WO = PoseOfVector(tick.q_WO[i]);
       const Vec6Of<AutoDiff> motion = h_ * tick.V_WO[i];
       objects_.push_back({&rows_.object(i), X_WO});
-      next_objects_.push_back({&rows_.object(i), Moved(X_WO, motion)});
+      next_objects_.push_back({&rows_.object(i), Displaced(X_WO, motion)});
     }
   }
 
@@ -113,7 +77,7 @@ class ConstraintStepper::Derivation final : public Follower {
     const SeparatingPlane& turned = rows_.planes()[plane];
     const Vec6Of<AutoDiff> target =
         is_again ? motion_ : Vec6Of<AutoDiff>(h_ * tick_.state.V_WT - whole_);
-    const DisplacedShape tool{&rows_.tool(), Moved(tool_pose(), target)};
+    const DisplacedShape tool{&rows_.tool(), Displaced(tool_pose(), target)};
     const DisplacedShape& object = next_objects_[turned.object];
     const PairContact then =
         rows_.ContactThen(plane, ValuesOf(tool.X_WB), ValuesOf(object.X_WB));

@@ -79,11 +79,8 @@ Vec6 ServoLaw::Limit(const Vec6& F) const {
 }
 
 Vec6 ServoLaw::Extrapolate(const PoseVector& X, const Vec6& V) const {
-  Vec6 delta;
-  delta << RotationLog<double>(QuaternionOf(X) *
-                               QuaternionOf(wrench_.X).conjugate()),
-      X.tail<3>() - wrench_.X.tail<3>();
-  return wrench_.F - wrench_.K * delta - wrench_.B * (V - wrench_.V);
+  return wrench_.F - wrench_.K * Displacement(wrench_.X, X) -
+         wrench_.B * (V - wrench_.V);
 }
 
 void ServoLaw::Slew(double now) {

@@ -159,10 +159,7 @@ FrictionStep ValuesOf(const FrictionStepOf<AutoDiff>& step) {
 template <typename Set, typename Plain>
 void SetValues(const Plain& values, Differentiated<Set>* differentiated) {
   Zip(differentiated->set, values, [&](AutoDiff& to, double from) {
-    to.value() = from;
-    if (to.derivatives().size() == 0) {
-      to.derivatives().setZero(differentiated->num_derivatives);
-    }
+    SetValue(from, differentiated->num_derivatives, &to);
   });
 }
 

@@ -35,8 +35,7 @@ class MovingPatch {
   // Center of pressure (3, m), extent and flushness, with B displaced by
   // [rotation vector; translation] about its origin.
   Rows5 At(const Vec6& by) {
-    const Mat3 turn = RotationExp<double>(by.head<3>()).toRotationMatrix();
-    const Pose X_AB{turn * X_AB_.R, X_AB_.p + by.tail<3>()};
+    const Pose X_AB = Displaced(X_AB_, by);
     const FeatureContactOf<double> now = FeaturesAt(X_AB);
     // Facets are flat within a tolerance: the query's distance is kept.
     const double h = contact_.distance + (now.distance - distance_);
@@ -145,7 +144,7 @@ DisplacedShape DisplaceShape(const Decomposition* shape,
                              const AutoDiffVector& q_WB, const char* what) {
   const PoseVectorOf<AutoDiff> q = ToScalars<7>(q_WB, what);
   PoseFromVector(q_WB.value, what);  // throws unless it is a pose
-  return {shape, {QuaternionOf(q).toRotationMatrix(), q.tail<3>()}};
+  return {shape, PoseOfVector(q)};
 }
 
 ContactSetOf<AutoDiff> DifferentiateContacts(

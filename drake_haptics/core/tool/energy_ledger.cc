@@ -7,14 +7,6 @@
 namespace drake_haptics {
 namespace {
 
-// Rotation vector and displacement of a frame between two poses, in W.
-Vec6 Displacement(const PoseVector& from, const PoseVector& to) {
-  Vec6 turn_dp;
-  turn_dp << RotationLog(QuaternionOf(to) * QuaternionOf(from).conjugate()),
-      to.tail<3>() - from.tail<3>();
-  return turn_dp;
-}
-
 // Energies of the whole loop in a tick, summed over its parts, J.
 struct Total {
   double stored = 0;

@@ -48,8 +48,7 @@ HandleSlopes ComputeHandleSlopes(const Vec3& p_HoTo_W,
   // A displacement [θ; p] of the handle at Ho moves its point at To by
   // p + θ × p_HoTo. Rotations are scaled back to rad.
   Mat6 shift = Mat6::Identity();
-  shift.bottomLeftCorner<3, 3>() << 0, p_HoTo_W.z(), -p_HoTo_W.y(),
-      -p_HoTo_W.z(), 0, p_HoTo_W.x(), p_HoTo_W.y(), -p_HoTo_W.x(), 0;
+  shift.bottomLeftCorner<3, 3>() = CrossMatrix<double>(-p_HoTo_W);
   const Mat6 at_handle = length.cwiseInverse().asDiagonal() * shift;
   return {at_handle.transpose() * K * at_handle,
           at_handle.transpose() * B * at_handle};

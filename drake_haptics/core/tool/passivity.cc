@@ -20,11 +20,9 @@ template <typename T>
 T HeldWrenchWork(const Eigen::Matrix<T, 6, 1>& F_H_W,
                  const Eigen::Matrix<T, 7, 1>& from_q_WH,
                  const Eigen::Matrix<T, 7, 1>& to_q_WH) {
-  const Vec3Of<T> turn = RotationLog<T>(QuaternionOf(to_q_WH) *
-                                        QuaternionOf(from_q_WH).conjugate());
-  return F_H_W.template head<3>().dot(turn) +
-         F_H_W.template tail<3>().dot(to_q_WH.template tail<3>() -
-                                      from_q_WH.template tail<3>());
+  const Vec6Of<T> motion = Displacement(from_q_WH, to_q_WH);
+  return F_H_W.template head<3>().dot(motion.template head<3>()) +
+         F_H_W.template tail<3>().dot(motion.template tail<3>());
 }
 
 template <typename T>

@@ -9,13 +9,6 @@
 namespace drake_haptics {
 namespace {
 
-template <typename T>
-Mat3Of<T> CrossMatrix(const Vec3Of<T>& v) {
-  Mat3Of<T> m;
-  m << T(0), -v.z(), v.y(), v.z(), T(0), -v.x(), -v.y(), v.x(), T(0);
-  return m;
-}
-
 // The solution of A x = b.
 Vec6 Solve(const Mat6& A, const Vec6& b) { return A.partialPivLu().solve(b); }
 
