@@ -12,12 +12,6 @@ namespace {
 constexpr double kRelativeStep = 1e-12;
 constexpr double kStep = 1e-16;  // m, and rad
 
-// Stiffness that a spring adds to the Hessian at a shortfall x: zero where it
-// rests or is at its limit.
-double Slope(const OneSidedSpring& spring, double x) {
-  return x > 0 && spring.k * x < spring.limit ? spring.k : 0.0;
-}
-
 // Returns the s in [0, 1] at which the function is least along
 // start + s · step. Its slope rises along the line, with kinks where a spring
 // begins to push or reaches its limit.
@@ -70,9 +64,9 @@ ConstraintSolution SolveConstraintProblem(const ConstraintProblem& problem,
       const double x = spring.b - spring.a.dot(solution.motion);
       if (!(x > 0)) continue;
       gradient -= std::min(spring.k * x, spring.limit) * spring.a;
-      const double slope = Slope(spring, x);
-      if (slope > 0) {
-        solution.hessian.noalias() += slope * spring.a * spring.a.transpose();
+      if (spring.k * x < spring.limit) {
+        solution.hessian.noalias() +=
+            spring.k * spring.a * spring.a.transpose();
       }
     }
     const Vec6 step = -solution.hessian.ldlt().solve(gradient);

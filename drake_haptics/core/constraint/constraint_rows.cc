@@ -75,9 +75,9 @@ void ConstraintRows::SetObjectPose(int i, const Pose& X_WO, double sweep) {
   overlaps_.SetObjectPose(i, X_WO);
 }
 
-double ConstraintRows::ReachOf(int i, const Vec3& p_O) const {
+double ConstraintRows::ReachOf(int i) const {
   const Box box = objects_[i].near.bounds();
-  return (box.center - p_O).norm() + box.half.norm();
+  return box.center.norm() + box.half.norm();
 }
 
 double ConstraintRows::MotionOf(const Pose& X_WT, const Vec6& motion) const {
@@ -151,14 +151,6 @@ void ConstraintRows::QueryObject(int i, const Pose& last_X_WT,
   deadlines_.Set(i, planes_.size() > first ? -kForever : marks_[i]);
 }
 
-// Whether the tool presses into an object, by the contacts that count.
-bool ConstraintRows::IsDeep(int object) const {
-  const auto& contacts = contacts_.contacts;
-  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
-    return c.object == object && !(c.distance > 0);
-  });
-}
-
 // Takes the contacts that count in place of the planes of objects that the tool
 // overlaps with.
 void ConstraintRows::QueryOverlaps() {
@@ -169,12 +161,16 @@ void ConstraintRows::QueryOverlaps() {
   auto plane = planes_.begin();
   auto contact = contacts_.contacts.begin();
   for (int i = 0; i < num_objects(); ++i) {
-    const bool is_deep = IsDeep(i);
+    const auto last =
+        std::find_if(contact, contacts_.contacts.end(),
+                     [i](const Contact& c) { return c.object != i; });
+    // Whether the tool presses into the object, by the contacts that count.
+    const bool is_deep = std::any_of(
+        contact, last, [](const Contact& c) { return !(c.distance > 0); });
     for (; plane != planes_.end() && plane->object == i; ++plane) {
       if (!is_deep) found_.push_back(*plane);
     }
-    for (; contact != contacts_.contacts.end() && contact->object == i;
-         ++contact) {
+    for (; contact != last; ++contact) {
       if (is_deep) found_.push_back(PlaneOf(*contact, X_WT_));
     }
   }
@@ -194,26 +190,21 @@ PosedPair ConstraintRows::PosedThen(int plane, const Pose& X_WT,
                                            RelativePose(X_WT, X_WO));
 }
 
+Separation ConstraintRows::Separate(int plane, const PosedPair& then) const {
+  const SeparatingPlane& moved = planes_[plane];
+  return ComputeSeparation(
+      then, objects_[moved.object].near.simplex(moved.watched), kForever);
+}
+
 double ConstraintRows::DistanceThen(int plane, const Pose& X_WT,
                                     const Pose& X_WO) const {
-  const SeparatingPlane& moved = planes_[plane];
-  return ComputeSeparation(PosedThen(plane, X_WT, X_WO),
-                           objects_[moved.object].near.simplex(moved.watched),
-                           kForever)
-      .distance;
+  return Separate(plane, PosedThen(plane, X_WT, X_WO)).distance;
 }
 
 PairContact ConstraintRows::ContactThen(int plane, const Pose& X_WT,
                                         const Pose& X_WO) const {
-  const SeparatingPlane& moved = planes_[plane];
   const PosedPair then = PosedThen(plane, X_WT, X_WO);
-  const Separation separation = ComputeSeparation(
-      then, objects_[moved.object].near.simplex(moved.watched), kForever);
-  PairContact contact = ContactApart(then, separation);
-  MinkowskiVertex support = separation.simplex.vertex_pairs[0];
-  SupportGap(then, separation.n, &support);
-  contact.support = {support.a, support.b};
-  return contact;
+  return SupportedContactApart(then, Separate(plane, then));
 }
 
 bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
@@ -221,8 +212,7 @@ bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
   SeparatingPlane& turned = planes_[plane];
   const Object& object = objects_[turned.object];
   const PosedPair then = PosedThen(plane, X_WT, X_WO);
-  const Separation separation =
-      ComputeSeparation(then, object.near.simplex(turned.watched), kForever);
+  const Separation separation = Separate(plane, then);
   if (separation.status != SeparationStatus::kApart) return false;
   const PosedPair now = PosedThen(plane, X_WT_, object.X_WO);
   const Vec3 from = turned.contact.n;

@@ -56,8 +56,8 @@ class ConstraintRows {
   ///     to the reach.
   void SetObjectPose(int i, const Pose& X_WO, double sweep);
 
-  /// Largest distance of an object's points from a point given in its frame, m.
-  double ReachOf(int i, const Vec3& p_O) const;
+  /// Largest distance of an object's points from its origin, m.
+  double ReachOf(int i) const;
 
   /// Bound on the motion of the tool's points under ξ = [θ; t], m.
   double MotionOf(const Pose& X_WT, const Vec6& motion) const;
@@ -120,9 +120,9 @@ class ConstraintRows {
 
   void QueryObject(int i, const Pose& last_X_WT, const Motion& tool_motion);
   void QueryOverlaps();
-  bool IsDeep(int object) const;
   void AppendRows(int plane);
   PosedPair PosedThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
+  Separation Separate(int plane, const PosedPair& then) const;
   double reach_of(int i) const { return skin_[i] + objects_[i].sweep + reach_; }
 
   TreedShape tool_;

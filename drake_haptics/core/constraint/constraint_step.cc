@@ -50,16 +50,6 @@ void RequireFinite(const ToolState& state, const PoseVector& q_WH,
   }
 }
 
-// The pose after a motion ξ of the origin, [θ; t].
-Pose Moved(const Pose& X, const Vec6& motion) {
-  return {RotationExp<double>(motion.head<3>()).toRotationMatrix() * X.R,
-          X.p + motion.tail<3>()};
-}
-
-Pose PoseOfVector(const PoseVector& q) {
-  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
-}
-
 // The symmetric part of a stiffness, which is the slope of a potential. Springs
 // and dampers that yield along different directions have another part.
 Mat6 Symmetric(const Mat6& K) {
@@ -98,9 +88,9 @@ void ConstraintStepper::SetObjectPose(int i, const Pose& X_WO,
     throw std::invalid_argument(
         "the pose or velocity of an object holds a value that is not finite");
   }
-  const double sweep = settings_.period *
-                       (V_WO.tail<3>().norm() +
-                        V_WO.head<3>().norm() * rows_.ReachOf(i, Vec3::Zero()));
+  const double sweep =
+      settings_.period *
+      (V_WO.tail<3>().norm() + V_WO.head<3>().norm() * rows_.ReachOf(i));
   rows_.SetObjectPose(i, X_WO, sweep);
   V_WO_[i] = V_WO;
 }
@@ -155,7 +145,8 @@ double ConstraintStepper::HeldRow::Force(const ConstraintProblem& problem,
 }
 
 Pose ConstraintStepper::NextPoseOf(int object) const {
-  return Moved(rows_.X_WO(object), settings_.period * V_WO_[object]);
+  return Displaced<double>(rows_.X_WO(object),
+                           settings_.period * V_WO_[object]);
 }
 
 // Whether pairs with turned planes keep at the next pose the skin that they
@@ -187,7 +178,8 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
       pushes_[rows_.rows()[k].plane] = 1;
     }
   }
-  const Pose X_coasted = Moved(X_WT, coasting), X_next = Moved(X_WT, motion);
+  const Pose X_coasted = Displaced(X_WT, coasting);
+  const Pose X_next = Displaced(X_WT, motion);
   bool is_any = false;
   for (std::size_t k = 0; k < pushes_.size(); ++k) {
     const SeparatingPlane& plane = rows_.planes()[k];
@@ -272,7 +264,7 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
     WriteSprings();
     solution = Solve(X_WT, solution.motion, result);
     // A plane's proof holds for translations only.
-    if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
+    if (!AreTurnedPiecesApart(Displaced(X_WT, solution.motion))) {
       rows_.RestorePlanes();
       WriteSprings();
       if (follower != nullptr) follower->Restore(first.motion);

@@ -6,7 +6,6 @@
 
 #include "pair/convex_pair.h"
 #include "pair/pair_contact_builders.h"
-#include "pair/separation.h"
 
 namespace drake_haptics {
 namespace {
@@ -14,6 +13,15 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
+
+PairContact SupportedContactApart(const PosedPair& pair,
+                                  const Separation& separation) {
+  PairContact contact = ContactApart(pair, separation);
+  MinkowskiVertex support = separation.simplex.vertex_pairs[0];
+  SupportGap(pair, separation.n, &support);
+  contact.support = {support.a, support.b};
+  return contact;
+}
 
 void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
                        std::vector<SeparatingPlane>* planes) {
@@ -91,10 +99,8 @@ bool NearPieces::Update(const Tick& tick, const BvttFront::Tick& front_tick,
     }
     *is_near = separation.status != SeparationStatus::kBeyond;
     if (separation.status == SeparationStatus::kApart) {
-      *contact = ContactApart(posed, separation);
-      state.vertex_pair = separation.simplex.vertex_pairs[0];
-      SupportGap(posed, separation.n, &state.vertex_pair);
-      contact->support = {state.vertex_pair.a, state.vertex_pair.b};
+      *contact = SupportedContactApart(posed, separation);
+      state.vertex_pair = {contact->support[0], contact->support[1]};
     } else if (*is_near) {
       *contact = QueryConvexPair(posed, &state, workspace);
       gap = contact->distance;

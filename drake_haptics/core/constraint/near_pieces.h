@@ -6,6 +6,7 @@
 #include "base/types.h"
 #include "pair/pair_contact.h"
 #include "pair/pair_state.h"
+#include "pair/separation.h"
 #include "tracker/bvtt_front.h"
 #include "tracker/tracked_object.h"
 
@@ -29,6 +30,11 @@ struct SeparatingPlane {
   MinkowskiVertex next_support;
   double turned = 0;  ///< share of the way that its last turn went
 };
+
+/// The contact at the closest points of a pair that is apart, with its support
+/// vertices.
+PairContact SupportedContactApart(const PosedPair& pair,
+                                  const Separation& separation);
 
 /// Tracks the pairs of convex pieces of a tool (A) and an object (B) that are
 /// within reach from tick to tick: pieces whose boxes are far apart cost
