@@ -171,10 +171,7 @@ class Query {
     }
     const GlobalDepth least = FindGlobalDepth(pair_, local, global_);
     if (least.status == GlobalDepthStatus::kFlat) return local;
-    return {least.status == GlobalDepthStatus::kExact
-                ? DepthStatus::kLocalMinimum
-                : DepthStatus::kBounded,
-            least.facet, least.facet.h, least.vertex_pair};
+    return least.ToDepth();
   }
 
   const Depth& LocalDepth() {

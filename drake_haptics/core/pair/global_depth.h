@@ -20,6 +20,13 @@ struct GlobalDepth {
   GlobalDepthStatus status = GlobalDepthStatus::kBounded;
   DepthCandidate facet;         ///< −facet.h is the depth
   MinkowskiVertex vertex_pair;  ///< one vertex pair of the facet
+
+  /// The same as the end of a walk.
+  Depth ToDepth() const {
+    return {status == GlobalDepthStatus::kExact ? DepthStatus::kLocalMinimum
+                                                : DepthStatus::kBounded,
+            facet, facet.h, vertex_pair};
+  }
 };
 
 /// A triangle of the surface that is nearer than the best facet known.

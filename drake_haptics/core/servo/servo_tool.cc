@@ -40,13 +40,8 @@ LocalWrench ServoTool::Step(const PoseVector& q_BH, const Vec6& V_BH,
       state_.q_WT.tail<3>() - q_WH.tail<3>(), coupling, contact);
   state_ = result_.next;
   anchors_ = result_.friction.next_state;
-  LocalWrench wrench;
-  wrench.F = base_.ChangeBack(result_.F_Ho_W_commanded);
-  wrench.X = q_BH;
-  wrench.V = V_BH;
-  wrench.K = base_.ChangeBack(slopes.K);
-  wrench.B = base_.ChangeBack(slopes.B);
-  return wrench;
+  return {base_.ChangeBack(result_.F_Ho_W_commanded), q_BH, V_BH,
+          base_.ChangeBack(slopes.K), base_.ChangeBack(slopes.B)};
 }
 
 }  // namespace drake_haptics

@@ -37,10 +37,6 @@ struct PosePath {
 /// and 4.1).
 class SixJointArm {
  public:
-  /// Six joint angles, rad, then their speeds, rad/s.
-  template <typename T>
-  using StateOf = Eigen::Matrix<T, 12, 1>;
-
   template <typename T>
   struct HandleOf {
     MovingPoseOf<T> pose;
@@ -51,6 +47,7 @@ class SixJointArm {
   /// @param q_WH pose of H with all angles zero.
   SixJointArm(const Mat6& J_WH, const PoseVector& q_WH);
 
+  /// @param state six joint angles, rad, then their speeds, rad/s.
   template <typename T>
   HandleOf<T> Evaluate(const Eigen::Matrix<T, 12, 1>& state) const;
 

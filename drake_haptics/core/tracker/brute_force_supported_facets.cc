@@ -128,10 +128,7 @@ Depth LeastOfAllFacets(const PosedPair& pair, const MinkowskiVertex& start,
                                 nullptr, {}, &state->walk);
   const GlobalDepth found = FindGlobalDepth(pair, local, state);
   if (found.status == GlobalDepthStatus::kFlat) return {};
-  Depth least{found.status == GlobalDepthStatus::kExact
-                  ? DepthStatus::kLocalMinimum
-                  : DepthStatus::kBounded,
-              found.facet, found.facet.h, found.vertex_pair};
+  Depth least = found.ToDepth();
   const Vec3 n_B = pair.X_AB.R.transpose() * least.best.n;
   least.best.support =
       ClassifySupport(pair.A, least.best.feature_A, least.best.n, pair.B,
