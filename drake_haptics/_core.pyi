@@ -561,6 +561,11 @@ class ConvexPair:
 
     def __repr__(self) -> str: ...
 
+def clock_interval() -> float:
+    """
+    Seconds between two readings of the clock that times queries, with nothing between them. Each timed query includes it.
+    """
+
 class ContactTrajectory:
     """
     The contacts of a tracker at each of k poses: read-only columns over all n contacts, pose after pose, and a sequence of `ContactSet`. Immutable.
@@ -1157,6 +1162,24 @@ class RigidToolDynamics:
     def step(self, state: AutoDiffVector, wrench_model: AutoDiffVector, h: float) -> AutoDiffVector:
         """The same with derivatives."""
 
+@overload
+def tool_weight(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    """
+    Weight of the tool, a force at its center of mass.
+
+    Args:
+        q_WT: (7,) pose [qw qx qy qz x y z].
+        p_TTcm: (3,) center of mass in the tool's frame, m.
+        weight_W: (3,) mass times gravity, N.
+
+    Returns:
+        (6,) wrench on the tool at To in W, [N·m; N].
+    """
+
+@overload
+def tool_weight(q_WT: AutoDiffVector, p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> AutoDiffVector:
+    """The same with derivatives."""
+
 class ConstraintStepResult:
     """Result of one tick of a `ConstraintStepper`. Immutable."""
 
@@ -1706,24 +1729,6 @@ def pre_contact_braking(contacts: AutoDiffContactSet, p_WTo: AutoDiffVector, V_W
     The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object after another.
     """
 
-@overload
-def tool_weight(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
-    """
-    Weight of the tool, a force at its center of mass.
-
-    Args:
-        q_WT: (7,) pose [qw qx qy qz x y z].
-        p_TTcm: (3,) center of mass in the tool's frame, m.
-        weight_W: (3,) mass times gravity, N.
-
-    Returns:
-        (6,) wrench on the tool at To in W, [N·m; N].
-    """
-
-@overload
-def tool_weight(q_WT: AutoDiffVector, p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> AutoDiffVector:
-    """The same with derivatives."""
-
 class PassivityBounds:
     """Bounds of the passivity controller."""
 
@@ -1958,11 +1963,6 @@ def weight_energy(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order=
         q_WT: (7,) pose of the tool.
         p_TTcm: (3,) center of mass in the tool's frame, m.
         weight_W: (3,) mass times gravity, N.
-    """
-
-def clock_interval() -> float:
-    """
-    Seconds between two readings of the clock that times queries, with nothing between them. Each timed query includes it.
     """
 
 class DeviceStatePacket:

@@ -17,12 +17,6 @@ inline std::string Counted(std::size_t number, const char* noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
-/// Iterates by `__getitem__`. It is defined for type checkers, which do not
-/// infer it.
-inline nanobind::object Iterate(nanobind::handle sequence) {
-  return nanobind::steal(PySeqIter_New(sequence.ptr()));
-}
-
 void BindAdvance(nanobind::module_& m);
 void BindAutoDiff(nanobind::module_& m);
 void BindPolytope(nanobind::module_& m);
@@ -39,11 +33,9 @@ void BindAutoDiffForce(nanobind::module_& m);
 void BindShading(nanobind::module_& m);
 void BindFriction(nanobind::module_& m);
 void BindBraking(nanobind::module_& m);
-void BindGravity(nanobind::module_& m);
 void BindPassivity(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
 void BindEnergy(nanobind::module_& m);
-void BindClock(nanobind::module_& m);
 void BindPackets(nanobind::module_& m);
 void BindGate(nanobind::module_& m);
 void BindServo(nanobind::module_& m);

@@ -4,7 +4,6 @@
 
 #include "base/autodiff.h"
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
 
 namespace nb = nanobind;
 
@@ -34,12 +33,8 @@ void BindAutoDiff(nb::module_& m) {
           "Raises:\n"
           "    ValueError: the sizes do not match.")
       .def("__len__", &AutoDiffVector::size)
-      .def_prop_ro(
-          "value", [](const AutoDiffVector& self) { return self.value; },
-          "(n,).")
-      .def_prop_ro(
-          "gradient", [](const AutoDiffVector& self) { return self.gradient; },
-          "(n, D).");
+      .def_ro("value", &AutoDiffVector::value, "(n,).")
+      .def_ro("gradient", &AutoDiffVector::gradient, "(n, D).");
 }
 
 }  // namespace drake_haptics

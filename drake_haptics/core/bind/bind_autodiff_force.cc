@@ -3,7 +3,7 @@
 
 #include "bind/bind.h"
 #include "bind/bind_autodiff_set.h"
-#include "bind/bind_eigen.h"
+#include "bind/bind_objects.h"
 #include "law/contact_thinning.h"
 #include "law/shared_stiffness.h"
 
@@ -29,18 +29,15 @@ void BindClusters(nb::module_& m) {
   DefGradientColumn<kItems, &Item::compression>(&set, "compression", "(k,) m.");
   DefGradientColumn<kItems, &Item::damping_share>(&set, "damping_share",
                                                   "(k,).");
-  set.def_prop_ro(
-      "coupling",
-      [](const AutoDiffClusterSet& s) {
-        const auto count = static_cast<Eigen::Index>(s.set.clusters.size());
-        MatrixOf<AutoDiff> H(count, count);
-        for (Eigen::Index i = 0; i < count; ++i) {
-          for (Eigen::Index j = 0; j < count; ++j) {
-            H(i, j) = s.set.coupling(i, j);
-          }
+  DefGradient(
+      &set, "coupling",
+      [](const ClusterSetOf<AutoDiff>& s) {
+        const auto count = static_cast<Eigen::Index>(s.clusters.size());
+        VectorOf<AutoDiff> H(count * count);
+        for (Eigen::Index k = 0; k < H.size(); ++k) {
+          H[k] = s.coupling(k / count, k % count);
         }
-        return ToAutoDiffVector(H.reshaped<Eigen::RowMajor>(),
-                                s.num_derivatives);
+        return H;
       },
       "(k k,) derivative of `compression` by the depths.");
   DefDifferentiated(&set, "The `ClusterSet`.");
@@ -102,62 +99,43 @@ AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
                               const AutoDiffVector& V_WO,
                               const Eigen::VectorXd& stiffness,
                               const Eigen::VectorXd& damping) {
+  const ContactMaterials materials(stiffness, damping);
   const Eigen::Index count = stiffness.size(), D = clusters.num_derivatives;
-  if (damping.size() != count) {
-    throw std::invalid_argument(
-        "stiffness and damping must have one row for each object");
-  }
   RequireVector(p_WTo, 3, D, "p_WTo");
   RequireVector(V_WT, 6, D, "V_WT");
   RequireVector(p_WO, 3 * count, D, "p_WO");
   RequireVector(V_WO, 6 * count, D, "V_WO");
   const auto tool = FrameOf(p_WTo, V_WT, 0);
-  std::vector<MovingFrameOf<AutoDiff>> objects;
+  const auto objects = FramesOf(p_WO, V_WO);
   std::vector<MovingFrame> values;
-  std::vector<ContactMaterial> materials;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    objects.push_back(FrameOf(p_WO, V_WO, i));
-    values.push_back(ValuesOf(objects.back()));
-    materials.push_back({stiffness[i], damping[i]});
-    RequireMaterial(materials.back());
-  }
+  for (const auto& object : objects) values.push_back(ValuesOf(object));
   AutoDiffPenaltyWrench wrench{
-      ComputePenaltyWrench(clusters.set, tool, objects, materials), D};
+      ComputePenaltyWrench(clusters.set, tool, objects, materials.materials),
+      D};
   SetValues(ComputePenaltyWrench(ValuesOf(clusters.set), ValuesOf(tool), values,
-                                 materials),
+                                 materials.materials),
             &wrench);
   return wrench;
 }
 
 void BindWrench(nb::module_& m) {
-  using Wrench = AutoDiffPenaltyWrench;
-  nb::class_<Wrench> wrench(
+  nb::class_<AutoDiffPenaltyWrench> wrench(
       m, "AutoDiffPenaltyWrench",
       "A `PenaltyWrench` with derivatives by D variables; its wrenches and "
       "forces are flattened by rows. Immutable; copies are the object itself.");
-  wrench.def_prop_ro(
-      "wrench_model",
-      [](const Wrench& w) {
-        return ToAutoDiffVector(ToVector(w.set.tool), w.num_derivatives);
-      },
+  DefGradient(
+      &wrench, "wrench_model", [](const auto& w) { return ToVector(w.tool); },
       "(78,) wrench on the tool at To with its linear model.");
-  wrench.def_prop_ro(
-      "F_To_W",
-      [](const Wrench& w) {
-        return ToAutoDiffVector(w.set.tool.F, w.num_derivatives);
-      },
+  DefGradient(
+      &wrench, "F_To_W", [](const auto& w) { return w.tool.F; },
       "(6,) wrench on the tool at To, [N·m; N].");
-  wrench.def_prop_ro(
-      "F_objects_W",
-      [](const Wrench& w) {
-        return Flat<6>(w.set.SumByObject(), w.num_derivatives);
-      },
+  DefGradient(
+      &wrench, "F_objects_W",
+      [](const auto& w) { return Flat<6>(w.SumByObject()); },
       "(6 m,) wrench on each object at its origin, [N·m; N].");
-  wrench.def_prop_ro(
-      "f_cluster_W",
-      [](const Wrench& w) {
-        return Flat<3>(w.set.f_cluster_W, w.num_derivatives);
-      },
+  DefGradient(
+      &wrench, "f_cluster_W",
+      [](const auto& w) { return Flat<3>(w.f_cluster_W); },
       "(3 k,) force of each cluster on the tool, N.");
   DefDifferentiated(&wrench, "The `PenaltyWrench`.");
   m.def(

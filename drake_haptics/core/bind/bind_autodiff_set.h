@@ -15,14 +15,13 @@ namespace drake_haptics {
 
 /// The entries of vectors, one vector after another.
 template <int Size>
-AutoDiffVector Flat(
-    const std::vector<Eigen::Matrix<AutoDiff, Size, 1>>& vectors,
-    Eigen::Index num_derivatives) {
+VectorOf<AutoDiff> Flat(
+    const std::vector<Eigen::Matrix<AutoDiff, Size, 1>>& vectors) {
   VectorOf<AutoDiff> all(Size * vectors.size());
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     all.segment<Size>(Size * i) = vectors[i];
   }
-  return ToAutoDiffVector(all, num_derivatives);
+  return all;
 }
 
 /// Frame i of frames that are stored one after another.
@@ -35,36 +34,48 @@ inline MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
   return frame;
 }
 
-/// The entries of a vector member of each item, one item after another.
-template <typename Item, typename Member>
-AutoDiffVector GradientColumn(const std::vector<Item>& items,
-                              Member Item::* member,
-                              Eigen::Index num_derivatives) {
-  VectorOf<AutoDiff> column;
-  if constexpr (std::is_same_v<Member, AutoDiff>) {
-    column.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      column[i] = items[i].*member;
-    }
-  } else {
-    column.resize(3 * items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      column.segment<3>(3 * i) = items[i].*member;
-    }
+/// Frames that are stored one after another.
+inline std::vector<MovingFrameOf<AutoDiff>> FramesOf(
+    const AutoDiffVector& p_WF, const AutoDiffVector& V_WF) {
+  std::vector<MovingFrameOf<AutoDiff>> frames;
+  for (Eigen::Index i = 0; i < p_WF.size() / 3; ++i) {
+    frames.push_back(FrameOf(p_WF, V_WF, i));
   }
-  return ToAutoDiffVector(column, num_derivatives);
+  return frames;
+}
+
+/// The entries of a number or vector member of each item, one item after
+/// another.
+template <typename Item, typename Member>
+VectorOf<AutoDiff> GradientColumn(const std::vector<Item>& items,
+                                  Member Item::* member) {
+  constexpr int size = std::is_same_v<Member, AutoDiff> ? 1 : 3;
+  VectorOf<AutoDiff> column(size * items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    column.segment<size>(size * i) << items[i].*member;
+  }
+  return column;
+}
+
+/// Defines `name` as numbers with derivatives, those that numbers(set) returns.
+template <typename Binding, typename Numbers>
+void DefGradient(Binding* binding, const char* name, const Numbers& numbers,
+                 const char* doc) {
+  using Class = typename Binding::Type;
+  binding->def_prop_ro(
+      name,
+      [numbers](const Class& self) {
+        return ToAutoDiffVector(numbers(self.set), self.num_derivatives);
+      },
+      doc);
 }
 
 /// Defines `name` as the column with derivatives of the vector `items`.
 template <auto items, auto member, typename Binding>
 void DefGradientColumn(Binding* binding, const char* name, const char* doc) {
-  using Class = typename Binding::Type;
-  binding->def_prop_ro(
-      name,
-      [](const Class& self) {
-        return GradientColumn(self.set.*items, member, self.num_derivatives);
-      },
-      doc);
+  DefGradient(
+      binding, name,
+      [](const auto& set) { return GradientColumn(set.*items, member); }, doc);
 }
 
 /// Defines the values, the number of variables, and copies that are the object

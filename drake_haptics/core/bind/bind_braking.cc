@@ -2,7 +2,6 @@
 
 #include "bind/bind.h"
 #include "bind/bind_autodiff_set.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_objects.h"
 #include "law/braking.h"
 
@@ -29,15 +28,11 @@ AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
     throw std::invalid_argument(
         "p_WO and V_WO must have 3 and 6 numbers for each object");
   }
-  std::vector<MovingFrameOf<AutoDiff>> objects;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    objects.push_back(FrameOf(p_WO, V_WO, i));
-  }
   return ToAutoDiffVector(
       ToVector(ComputeBraking<AutoDiff>(
           contacts.set.contacts,
-          {ToScalars<3>(p_WTo, "p_WTo"), ToScalars<6>(V_WT, "V_WT")}, objects,
-          gains)),
+          {ToScalars<3>(p_WTo, "p_WTo"), ToScalars<6>(V_WT, "V_WT")},
+          FramesOf(p_WO, V_WO), gains)),
       contacts.num_derivatives);
 }
 

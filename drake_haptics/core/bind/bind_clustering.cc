@@ -1,6 +1,5 @@
 #include "bind/bind.h"
 #include "bind/bind_columns.h"
-#include "bind/bind_eigen.h"
 #include "law/clustering.h"
 #include "law/contact_thinning.h"
 #include "law/shared_stiffness.h"

@@ -1,6 +1,5 @@
 #include <nanobind/stl/vector.h>
 
-#include <chrono>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -10,11 +9,11 @@
 #include "bind/bind.h"
 #include "bind/bind_array.h"
 #include "bind/bind_columns.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_pose.h"
 #include "bind/bind_real_array.h"
 #include "bind/bind_servo.h"
 #include "bind/bind_shapes.h"
+#include "bind/bind_trajectory.h"
 #include "bind/bind_turn.h"
 #include "constraint/constraint_step.h"
 
@@ -66,12 +65,10 @@ class SharedStepper {
     std::vector<double> numbers = ToNumbers(anchors, "anchors");
     if (numbers.empty()) numbers.resize(constants().num_anchors());
     const Turn turn(&mutex_, Turn::Gil::kHold);
-    const auto start = std::chrono::steady_clock::now();
+    const Clock::time_point start = Clock::now();
     stepper_.Step({q_WT, V_WT}, q_WH, V_WH, F_applied, numbers, &result);
-    const std::chrono::duration<double> elapsed =
-        std::chrono::steady_clock::now() - start;
     // The search and the step are one: all of it counts as the query.
-    result.contacts.query_seconds = elapsed.count();
+    result.contacts.query_seconds = SecondsSince(start);
     return result;
   }
 
@@ -150,42 +147,28 @@ void BindResult(nb::module_& m) {
       .def_prop_ro(
           "V_WT", [](const Result& r) { return r.next.V_WT; },
           "(6,) spatial velocity [rad/s; m/s] of the tool at the tick's end.")
-      .def_prop_ro(
-          "F_Ho_W_commanded",
-          [](const Result& r) { return r.F_Ho_W_commanded; },
+      .def_ro(
+          "F_Ho_W_commanded", &Result::F_Ho_W_commanded,
           "(6,) [torque; force] of the coupling on the handle at Ho in W, at "
           "the tick's beginning, as from `joined_coupling_wrench`.")
-      .def_prop_ro(
-          "contacts",
-          [](nb::handle self) {
-            return nb::cast(&nb::cast<const Result&>(self).contacts,
-                            nb::rv_policy::reference_internal, self);
-          },
-          nb::sig("def contacts(self) -> ContactSet"),
+      .def_ro(
+          "contacts", &Result::contacts,
           "`ContactSet` of the rows that push, ordered by object and pieces. A "
           "flush pair has several.")
-      .def_prop_ro(
-          "friction",
-          [](nb::handle self) {
-            return nb::cast(&nb::cast<const Result&>(self).friction,
-                            nb::rv_policy::reference_internal, self);
-          },
-          nb::sig("def friction(self) -> FrictionStep"),
-          "`FrictionStep` of `contacts`, which take the place of clusters.")
+      .def_ro("friction", &Result::friction,
+              "`FrictionStep` of `contacts`, which take the place of clusters.")
       .def_prop_ro(
           "F_Oo_W", [](const Result& r) { return ToRows(r.F_Oo_W); },
           "(num_objects, 6) [torque; force] of contact on each object at the "
           "origin of its frame, in W, friction included.")
-      .def_prop_ro(
-          "hessian", [](const Result& r) { return r.hessian; },
+      .def_ro(
+          "hessian", &Result::hessian,
           "(6, 6) slope of the step's forces by the tool's motion, [N·m; N] by "
           "[rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows that push, and "
           "the slope of friction. A change dF of the wrench on the tool "
           "changes its motion by A⁻¹ dF and V_WT by A⁻¹ dF / h.")
-      .def_prop_ro(
-          "contact_stiffness",
-          [](const Result& r) { return r.contact_stiffness; },
-          "(6, 6) the rows' part of `hessian`, Σ k a aᵀ.")
+      .def_ro("contact_stiffness", &Result::contact_stiffness,
+              "(6, 6) the rows' part of `hessian`, Σ k a aᵀ.")
       .def_ro("num_rows", &Result::num_rows,
               "Number of rows within reach, including those that do not push.")
       .def_ro("num_substeps", &Result::num_substeps,

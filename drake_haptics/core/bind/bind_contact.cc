@@ -3,8 +3,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
-#include <algorithm>
-#include <limits>
 #include <string>
 
 #include "bind/bind.h"
@@ -149,29 +147,17 @@ void BindContactSet(nb::module_& m) {
       "tolerance, ordered by object, piece of A, piece of B: read-only columns "
       "over n contacts, and a sequence of `Contact`. Immutable; copies are the "
       "object itself, so that it crosses Drake's abstract ports.");
-  set.def("__len__", [](const ContactSet& s) { return s.contacts.size(); });
-  set.def(
-      "__getitem__",
-      [](const ContactSet& s, Py_ssize_t i) {
-        return s.contacts[PlaceOf(i, s.contacts.size())];
-      },
-      nb::arg("i"));
-  set.def("__iter__", &Iterate,
-          nb::sig("def __iter__(self) -> collections.abc.Iterator[Contact]"));
-  const auto least_distance = [](const ContactSet& s) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : s.contacts) {
-      least = std::min(least, contact.distance);
-    }
-    return least;
-  };
+  DefSequence(
+      &set, [](const ContactSet& s) { return s.contacts.size(); },
+      [](const ContactSet& s, std::size_t i) { return s.contacts[i]; }, "i",
+      "def __iter__(self) -> collections.abc.Iterator[Contact]");
   set.def_prop_ro(
-      "least_distance", least_distance,
+      "least_distance", &ContactSet::least_distance,
       "Smallest distance of the contacts, m; infinite without any.");
-  const auto text = [least_distance](const ContactSet& s) -> nb::object {
+  const auto text = [](const ContactSet& s) -> nb::object {
     if (s.contacts.empty()) return nb::str("ContactSet(no contacts)");
     return nb::str("ContactSet({}, least distance {:.6g} m)")
-        .format(Counted(s.contacts.size(), "contact"), least_distance(s));
+        .format(Counted(s.contacts.size(), "contact"), s.least_distance());
   };
   set.def("__repr__", text, nb::sig("def __repr__(self) -> str"));
   set.def_ro("query_seconds", &ContactSet::query_seconds,

@@ -8,11 +8,30 @@
 /// The columns that all sets of contacts have.
 namespace drake_haptics {
 
-/// Place i of `size` items, counted from the end if negative, as Python does.
-inline std::size_t PlaceOf(Py_ssize_t i, std::size_t size) {
-  const Py_ssize_t count = static_cast<Py_ssize_t>(size);
-  if (i < -count || i >= count) throw nanobind::index_error();
-  return static_cast<std::size_t>(i < 0 ? i + count : i);
+/// Defines a sequence of size(self) items, of which item(self, i) is one.
+/// @param name_of_index argument of `__getitem__`; its documentation is `doc`.
+/// @param iter_signature signature of `__iter__`, which iterates by
+///     `__getitem__` and is defined for type checkers: they do not infer it.
+template <typename Binding, typename Size, typename Item, typename... Doc>
+void DefSequence(Binding* binding, const Size& size, const Item& item,
+                 const char* name_of_index, const char* iter_signature,
+                 const Doc&... doc) {
+  using Class = typename Binding::Type;
+  binding->def("__len__", size);
+  binding->def(
+      "__getitem__",
+      [size, item](const Class& self, Py_ssize_t i) {
+        const auto count = static_cast<Py_ssize_t>(size(self));
+        if (i < -count || i >= count) throw nanobind::index_error();
+        return item(self, static_cast<std::size_t>(i < 0 ? i + count : i));
+      },
+      nanobind::arg(name_of_index), doc...);
+  binding->def(
+      "__iter__",
+      [](nanobind::handle self) {
+        return nanobind::steal(PySeqIter_New(self.ptr()));
+      },
+      nanobind::sig(iter_signature));
 }
 
 /// Defines the columns of a set of contacts. `items` is its vector of contacts.

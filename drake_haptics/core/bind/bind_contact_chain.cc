@@ -15,7 +15,6 @@
 #include "bind/bind.h"
 #include "bind/bind_array.h"
 #include "bind/bind_contact.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_joined_coupling.h"
 #include "bind/bind_objects.h"
 #include "bind/bind_real_array.h"
@@ -52,10 +51,7 @@ class TrackedChain : public SceneTracker {
     if (!nb::try_cast(X_WT, q_WT)) {
       return SceneTracker::Query(X_WT, tolerance_value);
     }
-    std::optional<double> tolerance;
-    if (!tolerance_value.is_none()) {
-      tolerance = ToReal(tolerance_value, "tolerance");
-    }
+    const auto tolerance = ToOptionalReal(tolerance_value, "tolerance");
     const Turn turn(&mutex_, Turn::Gil::kHold);
     Refresh();
     return chain_.FindContacts(q_WT, tolerance.value_or(tracker_.tolerance()),
@@ -112,7 +108,7 @@ class TrackedChain : public SceneTracker {
   // Returns the least distance, and the one below which contacts push, m.
   std::pair<double, double> FindDeepest() const {
     const Turn turn(&mutex_, Turn::Gil::kHold);
-    return {chain_.least_distance(), chain_.tolerance_of_law()};
+    return {chain_.contacts().least_distance(), chain_.tolerance_of_law()};
   }
 
   // Returns the numbers of contacts and clusters, the least distance (m) and
@@ -124,7 +120,7 @@ class TrackedChain : public SceneTracker {
     chain_.FindWrench(ToToolState(state), &tracker_);
     const ContactSet& found = chain_.contacts();
     return {found.contacts.size(), chain_.num_clusters(),
-            chain_.least_distance(), found.query_seconds};
+            found.least_distance(), found.query_seconds};
   }
 
   Eigen::Matrix<double, 72, 1> FindHandleSlopes(

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_servo.h"
 #include "servo/contact_servo.h"
 #include "servo/servo_tool.h"
@@ -14,14 +13,7 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-class PythonContactServo : public ContactServo {
- public:
-  using ContactServo::ContactServo;
-  ~PythonContactServo() {
-    const nb::gil_scoped_release release;
-    Close();
-  }
-};
+using PythonContactServo = PythonServo<ContactServo>;
 
 void BindServoTool(nb::module_& m) {
   nb::class_<ServoTool>(

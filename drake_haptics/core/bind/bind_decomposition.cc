@@ -3,8 +3,10 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <concepts>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "bind/bind.h"
 #include "bind/bind_array.h"
@@ -20,6 +22,8 @@ namespace {
 using DecompositionPtr = std::shared_ptr<Decomposition>;
 using TrianglesArg = nb::ndarray<const std::int32_t, nb::shape<-1, 3>,
                                  nb::c_contig, nb::device::cpu>;
+using SolidArg = NumbersArg<std::uint8_t>;
+using LabelsArg = NumbersArg<std::int32_t>;
 
 std::vector<Triangle> ToTriangles(const TrianglesArg& array) {
   std::vector<Triangle> triangles(array.shape(0));
@@ -29,13 +33,27 @@ std::vector<Triangle> ToTriangles(const TrianglesArg& array) {
   return triangles;
 }
 
+using OptionalProgress = std::optional<std::function<bool(double)>>;
+
+// What the core reads without the GIL: copies of arrays, since Python may write
+// to them meanwhile.
+std::vector<Vec3> ToCore(const PointsArg& array) { return ToPoints(array); }
+std::vector<Triangle> ToCore(const TrianglesArg& array) {
+  return ToTriangles(array);
+}
 template <typename T>
-std::vector<T> ToVector(const NumbersArg<T>& array) {
+std::vector<T> ToCore(const NumbersArg<T>& array) {
   return {array.data(), array.data() + array.shape(0)};
 }
-
-Progress ToProgress(
-    const std::optional<std::function<bool(double)>>& progress) {
+std::vector<std::vector<Vec3>> ToCore(const std::vector<PointsArg>& arrays) {
+  std::vector<std::vector<Vec3>> points;
+  for (const PointsArg& array : arrays) points.push_back(ToPoints(array));
+  return points;
+}
+double ToCore(double number) { return number; }
+// A template, so that no array is asked whether it is a function.
+template <std::same_as<OptionalProgress> T>
+Progress ToCore(const T& progress) {
   if (!progress) return {};
   return [&](double share) {
     nb::gil_scoped_acquire acquire;
@@ -43,82 +61,17 @@ Progress ToProgress(
   };
 }
 
-DecompositionPtr Decompose(
-    const PointsArg& vertices, const TrianglesArg& triangles,
-    const NumbersArg<std::uint8_t>& solid,
-    std::optional<std::function<bool(double)>> progress) {
-  const std::vector<Vec3> points = ToPoints(vertices);
-  const std::vector<Triangle> faces = ToTriangles(triangles);
-  const std::vector<std::uint8_t> flags = ToVector(solid);
-  const Progress report = ToProgress(progress);
-  nb::gil_scoped_release release;
-  return std::make_shared<Decomposition>(
-      DecomposeSurface(points, faces, flags, report));
+// Calls a function of the core without the GIL.
+template <auto function, typename... Args>
+auto Call(const Args&... args) {
+  const auto copies = std::tuple(ToCore(args)...);
+  const nb::gil_scoped_release release;
+  return std::apply(function, copies);
 }
 
-MergedPieces Merge(const PointsArg& vertices, const TrianglesArg& triangles,
-                   const NumbersArg<std::uint8_t>& solid,
-                   const NumbersArg<std::int32_t>& labels, double error,
-                   std::optional<std::function<bool(double)>> progress) {
-  const std::vector<Vec3> points = ToPoints(vertices);
-  const std::vector<Triangle> faces = ToTriangles(triangles);
-  const std::vector<std::uint8_t> flags = ToVector(solid);
-  const std::vector<std::int32_t> pieces = ToVector(labels);
-  const Progress report = ToProgress(progress);
-  nb::gil_scoped_release release;
-  return MergePieces(points, faces, flags, pieces, error, report);
-}
-
-DecompositionPtr AssembleMerged(const PointsArg& vertices,
-                                const TrianglesArg& triangles,
-                                const NumbersArg<std::uint8_t>& solid,
-                                const NumbersArg<std::int32_t>& labels,
-                                const NumbersArg<std::int32_t>& groups,
-                                double error) {
-  const std::vector<Vec3> points = ToPoints(vertices);
-  const std::vector<Triangle> faces = ToTriangles(triangles);
-  const std::vector<std::uint8_t> flags = ToVector(solid);
-  const std::vector<std::int32_t> pieces = ToVector(labels);
-  const std::vector<std::int32_t> numbers = ToVector(groups);
-  nb::gil_scoped_release release;
-  return std::make_shared<Decomposition>(
-      AssembleMergedPieces(points, faces, flags, pieces, numbers, error));
-}
-
-DecompositionPtr Assemble(const PointsArg& vertices,
-                          const TrianglesArg& triangles,
-                          const NumbersArg<std::int32_t>& labels) {
-  const std::vector<Vec3> points = ToPoints(vertices);
-  const std::vector<Triangle> faces = ToTriangles(triangles);
-  const std::vector<std::int32_t> pieces = ToVector(labels);
-  nb::gil_scoped_release release;
-  return std::make_shared<Decomposition>(
-      AssembleSurfacePieces(points, faces, pieces));
-}
-
-DecompositionPtr Adopt(const PointsArg& vertices, const TrianglesArg& triangles,
-                       const std::vector<PointsArg>& pieces, double tolerance) {
-  const std::vector<Vec3> points = ToPoints(vertices);
-  const std::vector<Triangle> faces = ToTriangles(triangles);
-  std::vector<std::vector<Vec3>> piece_points;
-  for (const PointsArg& piece : pieces) {
-    piece_points.push_back(ToPoints(piece));
-  }
-  nb::gil_scoped_release release;
-  return std::make_shared<Decomposition>(
-      AdoptConvexPieces(points, faces, piece_points, tolerance));
-}
-
-double MeasureDistance(const PointsArg& vertices_A,
-                       const TrianglesArg& triangles_A,
-                       const PointsArg& vertices_B,
-                       const TrianglesArg& triangles_B) {
-  const std::vector<Vec3> points_A = ToPoints(vertices_A);
-  const std::vector<Vec3> points_B = ToPoints(vertices_B);
-  const std::vector<Triangle> faces_A = ToTriangles(triangles_A);
-  const std::vector<Triangle> faces_B = ToTriangles(triangles_B);
-  nb::gil_scoped_release release;
-  return CalcSurfaceDistance(points_A, faces_A, points_B, faces_B);
+template <auto function, typename... Args>
+DecompositionPtr Make(const Args&... args) {
+  return std::make_shared<Decomposition>(Call<function>(args...));
 }
 
 // Each piece keeps the whole decomposition alive.
@@ -160,8 +113,10 @@ void BindDecomposition(nb::module_& m) {
                     Counted(self.pieces.size(), "piece"));
       });
 
-  m.def("decompose_surface", &Decompose, nb::arg("vertices"),
-        nb::arg("triangles"), nb::arg("solid"),
+  m.def("decompose_surface",
+        &Make<DecomposeSurface, PointsArg, TrianglesArg, SolidArg,
+              OptionalProgress>,
+        nb::arg("vertices"), nb::arg("triangles"), nb::arg("solid"),
         nb::arg("progress") = nb::none(),
         "Convex surface decomposition (paper, section 5.3.1). A solid that "
         "differs from its hull by noise alone is one piece; pieces extend "
@@ -177,8 +132,9 @@ void BindDecomposition(nb::module_& m) {
         "Raises:\n"
         "    ValueError: bad indices or values.\n"
         "    RuntimeError: `progress` returned False.");
-  m.def("assemble_surface_pieces", &Assemble, nb::arg("vertices"),
-        nb::arg("triangles"), nb::arg("piece_of_triangle"),
+  m.def("assemble_surface_pieces",
+        &Make<AssembleSurfacePieces, PointsArg, TrianglesArg, LabelsArg>,
+        nb::arg("vertices"), nb::arg("triangles"), nb::arg("piece_of_triangle"),
         "The result of decompose_surface from its labels, without the "
         "search.\n\n"
         "Args:\n"
@@ -188,8 +144,11 @@ void BindDecomposition(nb::module_& m) {
         "without gaps.\n\n"
         "Raises:\n"
         "    ValueError: bad indices, values or labels.");
-  m.def("adopt_convex_pieces", &Adopt, nb::arg("vertices"),
-        nb::arg("triangles"), nb::arg("pieces"), nb::arg("tolerance"),
+  m.def("adopt_convex_pieces",
+        &Make<AdoptConvexPieces, PointsArg, TrianglesArg,
+              std::vector<PointsArg>, double>,
+        nb::arg("vertices"), nb::arg("triangles"), nb::arg("pieces"),
+        nb::arg("tolerance"),
         "Decomposition into pieces that were made elsewhere. Facets on the "
         "mesh are original, all others virtual.\n\n"
         "Args:\n"
@@ -213,8 +172,11 @@ void BindDecomposition(nb::module_& m) {
           "(k,) group of each piece, from 0 without gaps.")
       .def_ro("departure", &MergedPieces::departure,
               "Bound on how far any group's hull departs from the mesh, m.");
-  m.def("merge_pieces", &Merge, nb::arg("vertices"), nb::arg("triangles"),
-        nb::arg("solid"), nb::arg("piece_of_triangle"), nb::arg("error"),
+  m.def("merge_pieces",
+        &Call<MergePieces, PointsArg, TrianglesArg, SolidArg, LabelsArg, double,
+              OptionalProgress>,
+        nb::arg("vertices"), nb::arg("triangles"), nb::arg("solid"),
+        nb::arg("piece_of_triangle"), nb::arg("error"),
         nb::arg("progress") = nb::none(),
         "Joins neighboring pieces of an exact decomposition, the cheapest "
         "first, while hulls depart from the mesh by no more than an error.\n\n"
@@ -230,9 +192,12 @@ void BindDecomposition(nb::module_& m) {
         "Raises:\n"
         "    ValueError: bad indices or values.\n"
         "    RuntimeError: `progress` returned False.");
-  m.def("assemble_merged_pieces", &AssembleMerged, nb::arg("vertices"),
-        nb::arg("triangles"), nb::arg("solid"), nb::arg("piece_of_triangle"),
-        nb::arg("group_of_piece"), nb::arg("error"),
+  m.def("assemble_merged_pieces",
+        &Make<AssembleMergedPieces, PointsArg, TrianglesArg, SolidArg,
+              LabelsArg, LabelsArg, double>,
+        nb::arg("vertices"), nb::arg("triangles"), nb::arg("solid"),
+        nb::arg("piece_of_triangle"), nb::arg("group_of_piece"),
+        nb::arg("error"),
         "Decomposition with the groups that merge_pieces found.\n\n"
         "Args:\n"
         "    vertices, triangles, solid, piece_of_triangle, error: arguments "
@@ -241,8 +206,11 @@ void BindDecomposition(nb::module_& m) {
         "Raises:\n"
         "    ValueError: bad indices, values or labels.");
   m.def(
-      "surface_distance", &MeasureDistance, nb::arg("vertices_A"),
-      nb::arg("triangles_A"), nb::arg("vertices_B"), nb::arg("triangles_B"),
+      "surface_distance",
+      &Call<CalcSurfaceDistance, PointsArg, TrianglesArg, PointsArg,
+            TrianglesArg>,
+      nb::arg("vertices_A"), nb::arg("triangles_A"), nb::arg("vertices_B"),
+      nb::arg("triangles_B"),
       "Upper bound on the distance, m, of any point of either surface from the "
       "other. It exceeds the largest distance by no more than 5%, or 1e-4 of "
       "the size.\n\n"

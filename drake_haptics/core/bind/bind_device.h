@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -44,11 +45,11 @@ void ReadCount(const char* name, nanobind::int_ value, Out* out,
   *out = static_cast<Out>(count);
 }
 
-template <std::size_t size>
-Eigen::Matrix<double, static_cast<int>(size), 1> ToArray(
-    const double (&values)[size]) {
-  return Eigen::Map<const Eigen::Matrix<double, static_cast<int>(size), 1>>(
-      values);
+/// A fresh array of the numbers of a member.
+template <auto member, typename Class>
+auto ArrayOf(const Class& self) {
+  constexpr int size = sizeof(self.*member) / sizeof(double);
+  return Eigen::Matrix<double, size, 1>(std::data(self.*member));
 }
 
 inline const std::uint8_t* Data(const nanobind::bytes& bytes) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
 #include "tool/energy_ledger.h"
 #include "tool/stored_energy.h"
 

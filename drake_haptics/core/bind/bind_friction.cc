@@ -8,7 +8,6 @@
 #include "bind/bind_array.h"
 #include "bind/bind_autodiff_set.h"
 #include "bind/bind_columns.h"
-#include "bind/bind_eigen.h"
 #include "law/friction.h"
 #include "law/penalty_force.h"
 
@@ -124,35 +123,25 @@ void BindFrictionStep(nb::module_& m) {
 }
 
 void BindAutoDiffStep(nb::module_& m) {
-  using Step = AutoDiffFrictionStep;
-  nb::class_<Step> step(
+  nb::class_<AutoDiffFrictionStep> step(
       m, "AutoDiffFrictionStep",
       "A `FrictionStep` with derivatives by D variables. Immutable; copies are "
       "the object itself.");
-  step.def_prop_ro(
-      "wrench_model",
-      [](const Step& s) {
-        return ToAutoDiffVector(ToVector(s.set.tool), s.num_derivatives);
-      },
+  DefGradient(
+      &step, "wrench_model", [](const auto& s) { return ToVector(s.tool); },
       "(78,) wrench on the tool at To with its linear model.");
-  step.def_prop_ro(
-      "f_cluster_W",
-      [](const Step& s) { return Flat(s.set.f_cluster_W, s.num_derivatives); },
+  DefGradient(
+      &step, "f_cluster_W", [](const auto& s) { return Flat(s.f_cluster_W); },
       "(3 k,) force of each cluster on the tool, N.");
-  step.def_prop_ro(
-      "stored_J",
-      [](const Step& s) {
-        return ToAutoDiffVector(VectorOf<AutoDiff>{{s.set.stored}},
-                                s.num_derivatives);
-      },
+  DefGradient(
+      &step, "stored_J",
+      [](const auto& s) { return VectorOf<AutoDiff>{{s.stored}}; },
       "(1,) elastic energy of the contacts, J.");
-  step.def_prop_ro(
-      "next_state",
-      [](const Step& s) {
-        return ToAutoDiffVector(
-            Eigen::Map<const VectorOf<AutoDiff>>(s.set.next_state.data(),
-                                                 s.set.next_state.size()),
-            s.num_derivatives);
+  DefGradient(
+      &step, "next_state",
+      [](const auto& s) {
+        return Eigen::Map<const VectorOf<AutoDiff>>(s.next_state.data(),
+                                                    s.next_state.size());
       },
       "(n,) state from which the next tick starts.");
   DefDifferentiated(&step, "The `FrictionStep`.");

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/types.h"
 #include "bind/bind.h"
 #include "bind/bind_device.h"
 
@@ -36,13 +37,14 @@ std::uint64_t ReadTime(nb::int_ now_ns) {
   return time;
 }
 
-Eigen::Matrix<double, 6, 1> StepGate(dh_gate* gate, nb::int_ now_ns,
-                                     nb::handle X_BH, nb::handle V_BH) {
-  double X[7], V[6], F[6];
+Vec6 StepGate(dh_gate* gate, nb::int_ now_ns, nb::handle X_BH,
+              nb::handle V_BH) {
+  double X[7], V[6];
+  Vec6 F;
   ReadReals(X_BH, "X_BH", X);
   ReadReals(V_BH, "V_BH", V);
-  dh_gate_step(gate, ReadTime(now_ns), X, V, F);
-  return ToArray(F);
+  dh_gate_step(gate, ReadTime(now_ns), X, V, F.data());
+  return F;
 }
 
 std::map<std::string, std::uint64_t> Counts(const dh_gate& gate) {
@@ -131,12 +133,10 @@ void BindGate(nb::module_& m) {
       .def_ro("command_sequence", &dh_gate::command_sequence,
               "Sequence of the newest command that was accepted.")
       .def_prop_ro(
-          "command_F_Ho_B",
-          [](const dh_gate& gate) { return ToArray(gate.command_F_Ho_B); },
+          "command_F_Ho_B", &ArrayOf<&dh_gate::command_F_Ho_B, dh_gate>,
           "(6,) the newest wrench to show, within the limits, N·m and N.")
-      .def_prop_ro(
-          "F_Ho_B", [](const dh_gate& gate) { return ToArray(gate.F_Ho_B); },
-          "(6,) the wrench that is shown, N·m and N.")
+      .def_prop_ro("F_Ho_B", &ArrayOf<&dh_gate::F_Ho_B, dh_gate>,
+                   "(6,) the wrench that is shown, N·m and N.")
       .def_ro("scale", &dh_gate::scale,
               "Share of the newest wrench that is shown, 0 to 1.")
       .def_prop_ro("rejected", &dh_gate_rejected,

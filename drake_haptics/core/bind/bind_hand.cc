@@ -50,8 +50,8 @@ void RequireFinite(const State<T>& state) {
 }
 
 template <typename T>
-Eigen::Matrix<T, 13, 1> HandleState(const ArmDynamics& held,
-                                    const State<T>& state) {
+Eigen::Matrix<T, 13, 1> CalcHandleState(const ArmDynamics& held,
+                                        const State<T>& state) {
   RequireFinite(state);
   const MovingPoseOf<T> pose = held.arm.Evaluate(state).pose;
   Eigen::Matrix<T, 13, 1> out;
@@ -120,14 +120,14 @@ void BindHeldArm(nb::module_& m) {
           "    path: pose X_WP over time.\n"
           "    q_PH: (7,) pose in P at which the hand wants the handle.\n"
           "    gains: gains of the hand's spring and damper.")
-      .def("calc_handle_state", &HandleState<double>, nb::arg("state"),
+      .def("calc_handle_state", &CalcHandleState<double>, nb::arg("state"),
            "Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; "
            "m/s].")
       .def(
           "calc_handle_state",
           [](const ArmDynamics& self, const AutoDiffVector& state) {
             return ToAutoDiffVector(
-                HandleState<AutoDiff>(self, ToScalars<12>(state, "state")),
+                CalcHandleState<AutoDiff>(self, ToScalars<12>(state, "state")),
                 state.num_derivatives());
           },
           nb::arg("state"), "The same with derivatives.")

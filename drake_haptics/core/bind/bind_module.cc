@@ -49,11 +49,9 @@ NB_MODULE(_core, m) {
   drake_haptics::BindShading(m);
   drake_haptics::BindFriction(m);
   drake_haptics::BindBraking(m);
-  drake_haptics::BindGravity(m);
   drake_haptics::BindPassivity(m);
   drake_haptics::BindHand(m);
   drake_haptics::BindEnergy(m);
-  drake_haptics::BindClock(m);
   drake_haptics::BindPackets(m);
   drake_haptics::BindGate(m);
   drake_haptics::BindServo(m);

@@ -76,15 +76,12 @@ void BindPackets(nb::module_& m) {
               "Number of the packet; rises by one, and wraps.")
       .def_ro("time_ns", &dh_state::time_ns,
               "Time of the sample by the driver's clock, ns.")
-      .def_prop_ro(
-          "X_BH", [](const dh_state& s) { return ToArray(s.X_BH); },
-          "(7,) pose [qw qx qy qz x y z], m.")
-      .def_prop_ro(
-          "V_BH", [](const dh_state& s) { return ToArray(s.V_BH); },
-          "(6,) spatial velocity [ω; v], rad/s and m/s.")
-      .def_prop_ro(
-          "F_Ho_B", [](const dh_state& s) { return ToArray(s.F_Ho_B); },
-          "(6,) wrench shown [τ; f] at Ho, N·m and N.")
+      .def_prop_ro("X_BH", &ArrayOf<&dh_state::X_BH, dh_state>,
+                   "(7,) pose [qw qx qy qz x y z], m.")
+      .def_prop_ro("V_BH", &ArrayOf<&dh_state::V_BH, dh_state>,
+                   "(6,) spatial velocity [ω; v], rad/s and m/s.")
+      .def_prop_ro("F_Ho_B", &ArrayOf<&dh_state::F_Ho_B, dh_state>,
+                   "(6,) wrench shown [τ; f] at Ho, N·m and N.")
       .def_ro("boot", &dh_state::boot,
               "Number that is random in each run of the driver.")
       .def_ro("command_sequence", &dh_state::command_sequence,
@@ -106,9 +103,8 @@ void BindPackets(nb::module_& m) {
               "Number of the packet; rises by one, and wraps.")
       .def_ro("time_ns", &dh_command::time_ns,
               "Time of sending by the host's clock, ns.")
-      .def_prop_ro(
-          "F_Ho_B", [](const dh_command& c) { return ToArray(c.F_Ho_B); },
-          "(6,) wrench to show [τ; f] at Ho in B, N·m and N.")
+      .def_prop_ro("F_Ho_B", &ArrayOf<&dh_command::F_Ho_B, dh_command>,
+                   "(6,) wrench to show [τ; f] at Ho in B, N·m and N.")
       .def_ro("state_sequence", &dh_command::state_sequence,
               "Number of the state that this answers.")
       .def_ro("ttl_us", &dh_command::ttl_us, "Time to live, µs.")

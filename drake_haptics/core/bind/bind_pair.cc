@@ -1,8 +1,10 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 
 #include "bind/bind.h"
@@ -99,22 +101,30 @@ class ConvexPair {
   mutable std::mutex mutex_;
 };
 
+// Mean of the middle half of many readings, which is free of interruptions and
+// finer than a tick of the clock.
+double ClockInterval() {
+  constexpr int kReadings = 20000;
+  std::vector<double> intervals(kReadings);
+  for (double& interval : intervals) {
+    const Clock::time_point start = Clock::now();
+    interval = SecondsSince(start);
+  }
+  std::sort(intervals.begin(), intervals.end());
+  const auto begin = intervals.begin() + kReadings / 4;
+  const auto end = intervals.end() - kReadings / 4;
+  return std::accumulate(begin, end, 0.0) / static_cast<double>(end - begin);
+}
+
 void BindPairTrajectory(nb::module_& m) {
   nb::class_<PairTrajectory> trajectory(
       m, "PairTrajectory",
       "The contact of a `ConvexPair` at each of n poses: read-only columns, "
       "and a sequence of `Contact`. Immutable.");
-  trajectory.def("__len__",
-                 [](const PairTrajectory& t) { return t.contacts.size(); });
-  trajectory.def(
-      "__getitem__",
-      [](const PairTrajectory& t, Py_ssize_t k) {
-        return t.contacts[PlaceOf(k, t.contacts.size())];
-      },
-      nb::arg("k"));
-  trajectory.def(
-      "__iter__", &Iterate,
-      nb::sig("def __iter__(self) -> collections.abc.Iterator[Contact]"));
+  DefSequence(
+      &trajectory, [](const PairTrajectory& t) { return t.contacts.size(); },
+      [](const PairTrajectory& t, std::size_t k) { return t.contacts[k]; }, "k",
+      "def __iter__(self) -> collections.abc.Iterator[Contact]");
   trajectory.def("__repr__", [](const PairTrajectory& t) {
     return nb::str("PairTrajectory({})")
         .format(Counted(t.contacts.size(), "pose"));
@@ -189,6 +199,9 @@ void BindConvexPair(nb::module_& m) {
     return nb::str("ConvexPair({}, {}, depth='{}')")
         .format(nb::cast(self.A()), nb::cast(self.B()), self.depth());
   });
+  m.def("clock_interval", &ClockInterval,
+        "Seconds between two readings of the clock that times queries, with "
+        "nothing between them. Each timed query includes it.");
 }
 
 }  // namespace drake_haptics

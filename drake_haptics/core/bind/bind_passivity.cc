@@ -1,6 +1,5 @@
 #include "base/autodiff.h"
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
 #include "tool/passivity.h"
 
 namespace nb = nanobind;

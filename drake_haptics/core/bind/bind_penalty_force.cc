@@ -5,7 +5,6 @@
 #include "base/rotation.h"
 #include "bind/bind.h"
 #include "bind/bind_columns.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_objects.h"
 #include "law/wrench_model.h"
 

@@ -170,9 +170,7 @@ void BindPolytope(nb::module_& m) {
           },
           nb::arg("vertex"),
           "(r, 3) unit directions of the surface's edges at a vertex.")
-      .def_prop_ro(
-          "centroid", [](const Polytope& P) { return P.centroid; },
-          "(3,) mean of the vertices, m.")
+      .def_ro("centroid", &Polytope::centroid, "(3,) mean of the vertices, m.")
       .def_ro("radius", &Polytope::radius,
               "Radius of the ball about the centroid, m.")
       .def("__reduce__", &Reduce)

@@ -3,6 +3,7 @@
 #include <nanobind/nanobind.h>
 
 #include <cstring>
+#include <optional>
 #include <string>
 
 /// Numbers that Python passes in, with errors that name the argument.
@@ -46,6 +47,13 @@ class RealArray {
 
 /// A real number. @throws std::invalid_argument if it is not a number.
 double ToReal(nanobind::handle value, const char* name);
+
+/// The same, or nothing for None.
+inline std::optional<double> ToOptionalReal(nanobind::handle value,
+                                            const char* name) {
+  if (value.is_none()) return std::nullopt;
+  return ToReal(value, name);
+}
 
 /// The index of an object, of which there are `size`. Accepts what lists do, so
 /// that NumPy's integers are accepted.

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
+#include "bind/bind_device.h"
 #include "device/servo_law.h"
 #include "tool/handle_model.h"
 
@@ -22,23 +22,8 @@ using OptionalSlope = std::optional<Mat6>;
 LocalWrench ToLocalWrench(const Vec6& F, const PoseVector& X, const Vec6& V,
                           const OptionalSlope& K, const OptionalSlope& B,
                           double published_at) {
-  LocalWrench wrench;
-  wrench.F = F;
-  wrench.X = X;
-  wrench.V = V;
-  if (K) wrench.K = *K;
-  if (B) wrench.B = *B;
-  wrench.published_at = published_at;
-  return wrench;
-}
-
-// A fresh array with the values of one member.
-template <auto member>
-auto Copy(const HandleState& state) {
-  const auto& values = state.*member;
-  return Eigen::Matrix<double,
-                       std::tuple_size_v<std::decay_t<decltype(values)>>, 1>(
-      values.data());
+  const Mat6 none = Mat6::Zero();
+  return {F, X, V, K.value_or(none), B.value_or(none), published_at};
 }
 
 void BindLaw(nb::module_& m) {
@@ -96,11 +81,11 @@ void BindState(nb::module_& m) {
               "Rises with every state that counts, also when the driver is "
               "restarted.")
       .def_ro("time_s", &HandleState::time, "Time by the driver's clock, s.")
-      .def_prop_ro("X_BH", &Copy<&HandleState::X>,
+      .def_prop_ro("X_BH", &ArrayOf<&HandleState::X, HandleState>,
                    "(7,) pose [qw qx qy qz x y z], m.")
-      .def_prop_ro("V_BH", &Copy<&HandleState::V>,
+      .def_prop_ro("V_BH", &ArrayOf<&HandleState::V, HandleState>,
                    "(6,) velocity [ω; v], rad/s and m/s.")
-      .def_prop_ro("F_Ho_B", &Copy<&HandleState::F>,
+      .def_prop_ro("F_Ho_B", &ArrayOf<&HandleState::F, HandleState>,
                    "(6,) wrench that the device showed, [τ; f], N·m and N.")
       .def_ro("max_force_N", &HandleState::max_force, "The device's limit, N.")
       .def_ro("max_torque_Nm", &HandleState::max_torque,

@@ -7,16 +7,17 @@
 
 namespace drake_haptics {
 
-/// A UdpServo at whose end other Python threads run. Its binding lets them run
-/// while a name is looked up, too.
-class PythonUdpServo : public UdpServo {
+/// A servo at whose end other Python threads run.
+template <typename Servo>
+class PythonServo : public Servo {
  public:
-  using UdpServo::UdpServo;
-  ~PythonUdpServo() {
+  using Servo::Servo;
+  ~PythonServo() {
     const nanobind::gil_scoped_release release;
-    Close();
+    this->Close();
   }
 };
+using PythonUdpServo = PythonServo<UdpServo>;
 
 /// A copy of the core's stepper in a Python `ConstraintStepper`.
 /// @throws nanobind::cast_error for anything else.

@@ -6,7 +6,6 @@
 #include "base/rotation.h"
 #include "bind/bind.h"
 #include "bind/bind_columns.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_pose.h"
 #include "law/autodiff_sets.h"
 #include "law/force_shading.h"

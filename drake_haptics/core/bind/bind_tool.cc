@@ -12,8 +12,8 @@
 #include "base/wrench_limit.h"
 #include "bind/bind.h"
 #include "bind/bind_columns.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_joined_coupling.h"
+#include "law/tool_gravity.h"
 #include "tool/rigid_tool.h"
 #include "tool/virtual_coupling.h"
 
@@ -182,9 +182,8 @@ void BindRigidTool(nb::module_& m) {
           "about it (3, 3) kg·m², both in the tool's frame.\n\n"
           "Raises:\n    ValueError: not a physical inertia.")
       .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
-      .def_prop_ro(
-          "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
-          "Center of mass (3,) in the tool's frame, m.")
+      .def_ro("p_TTcm", &ToolInertia::p_TTcm,
+              "Center of mass (3,) in the tool's frame, m.")
       // The overload that each tick calls is first: trying another takes as
       // long as the step.
       .def(
@@ -255,6 +254,27 @@ void BindLimit(nb::module_& m) {
       "range.");
 }
 
+void BindWeight(nb::module_& m) {
+  m.def("tool_weight", &ToolWeight<double>, nb::arg("q_WT"), nb::arg("p_TTcm"),
+        nb::arg("weight_W"),
+        "Weight of the tool, a force at its center of mass.\n\n"
+        "Args:\n"
+        "    q_WT: (7,) pose [qw qx qy qz x y z].\n"
+        "    p_TTcm: (3,) center of mass in the tool's frame, m.\n"
+        "    weight_W: (3,) mass times gravity, N.\n\n"
+        "Returns:\n"
+        "    (6,) wrench on the tool at To in W, [N·m; N].");
+  m.def(
+      "tool_weight",
+      [](const AutoDiffVector& q_WT, const Vec3& p_TTcm, const Vec3& weight_W) {
+        return ToAutoDiffVector(
+            ToolWeight(ToScalars<7>(q_WT, "q_WT"), p_TTcm, weight_W),
+            q_WT.num_derivatives());
+      },
+      nb::arg("q_WT"), nb::arg("p_TTcm"), nb::arg("weight_W"),
+      "The same with derivatives.");
+}
+
 }  // namespace
 
 CouplingWrench ComputeJoinedCoupling(const JoinedVector<double>& joined) {
@@ -266,6 +286,7 @@ void BindTool(nb::module_& m) {
   BindJoinedCoupling(m);
   BindLimit(m);
   BindRigidTool(m);
+  BindWeight(m);
 }
 
 }  // namespace drake_haptics

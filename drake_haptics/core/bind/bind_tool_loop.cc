@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "bind/bind.h"
-#include "bind/bind_eigen.h"
 #include "bind/bind_trajectory.h"
 #include "tool/tool_loop.h"
 
@@ -52,12 +51,9 @@ Run RunToolLoop(ToolLoop* loop, double tolerance, const States& handle,
     loop->Step(q_WH, V_WH, &state);
     seconds[k] = SecondsSince(begin);
     states.row(k) = ToVector(state).transpose();
-    const std::vector<Contact>& contacts = loop->contacts().contacts;
-    num_contacts[k] = static_cast<int>(contacts.size());
-    nearest[k] = tolerance;
-    for (const Contact& contact : contacts) {
-      nearest[k] = std::min(nearest[k], contact.distance);
-    }
+    const ContactSet& found = loop->contacts();
+    num_contacts[k] = static_cast<int>(found.contacts.size());
+    nearest[k] = std::min(tolerance, found.least_distance());
   });
   return run;
 }

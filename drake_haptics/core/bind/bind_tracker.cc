@@ -133,10 +133,7 @@ void SceneTracker::SetObjectPose(nb::handle place, nb::handle X_WO_value) {
 ContactSet SceneTracker::Query(nb::handle X_WT_value,
                                nb::handle tolerance_value) {
   const Pose X_WT = ToPose(X_WT_value, "X_WT");
-  std::optional<double> tolerance;
-  if (!tolerance_value.is_none()) {
-    tolerance = ToReal(tolerance_value, "tolerance");
-  }
+  const auto tolerance = ToOptionalReal(tolerance_value, "tolerance");
   ContactSet contacts;
   const Turn turn(&mutex_, Turn::Gil::kHold);
   tracker_.Query(X_WT, tolerance.value_or(tracker_.tolerance()), &contacts);
@@ -156,17 +153,11 @@ void BindContactTrajectory(nb::module_& m) {
       "The contacts of a tracker at each of k poses: read-only columns over "
       "all n contacts, pose after pose, and a sequence of `ContactSet`. "
       "Immutable.");
-  trajectory.def("__len__",
-                 [](const ContactTrajectory& t) { return t.seconds.size(); });
-  trajectory.def(
-      "__getitem__",
-      [](const ContactTrajectory& t, Py_ssize_t k) {
-        return t.At(PlaceOf(k, t.seconds.size()));
-      },
-      nb::arg("k"), "The contacts at pose k.");
-  trajectory.def(
-      "__iter__", &Iterate,
-      nb::sig("def __iter__(self) -> collections.abc.Iterator[ContactSet]"));
+  DefSequence(
+      &trajectory, [](const ContactTrajectory& t) { return t.seconds.size(); },
+      [](const ContactTrajectory& t, std::size_t k) { return t.At(k); }, "k",
+      "def __iter__(self) -> collections.abc.Iterator[ContactSet]",
+      "The contacts at pose k.");
   trajectory.def("__repr__", [](const ContactTrajectory& t) {
     return nb::str("ContactTrajectory({}, {})")
         .format(Counted(t.seconds.size(), "pose"),

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/autodiff.h"
@@ -78,6 +80,15 @@ template <typename T>
 struct ContactSetOf {
   std::vector<ContactOf<T>> contacts;
   double query_seconds = 0;  ///< time that the query took inside the core
+
+  /// Smallest distance of the contacts, m; infinite without any.
+  double least_distance() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const ContactOf<T>& contact : contacts) {
+      least = std::min(least, ValueOf(contact.distance));
+    }
+    return least;
+  }
 };
 using ContactSet = ContactSetOf<double>;
 

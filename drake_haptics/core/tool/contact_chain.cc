@@ -1,8 +1,6 @@
 #include "tool/contact_chain.h"
 
-#include <algorithm>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -29,14 +27,6 @@ const ContactLaw& ContactChain::law() const {
     throw std::logic_error("no contact law was set");
   }
   return *law_;
-}
-
-double ContactChain::least_distance() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Contact& contact : contacts_.contacts) {
-    least = std::min(least, contact.distance);
-  }
-  return least;
 }
 
 void ContactChain::Forget() {

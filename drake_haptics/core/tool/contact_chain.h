@@ -44,9 +44,6 @@ class ContactChain {
   /// Contacts that were found last, not shaded.
   const ContactSet& contacts() const { return contacts_; }
 
-  /// Smallest distance of these contacts, m; infinite without any.
-  double least_distance() const;
-
   /// Distance below which contacts push, m.
   /// @throws std::logic_error without a law.
   double tolerance_of_law() const { return law().tolerance; }
