@@ -37,7 +37,8 @@ bool IsConvex(const Polytope& polytope, const Polytope::Edge& edge) {
     return true;
   }
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
-  return !edge.is_rim() && along.cross(edge.wings[0]).dot(edge.wings[1]) < 0;
+  return !edge.wings[0].isZero(0) && !edge.wings[1].isZero(0) &&
+         along.cross(edge.wings[0]).dot(edge.wings[1]) < 0;
 }
 
 // Whether n leaves the solid at an edge of the mesh: seen from inside, a
@@ -47,8 +48,8 @@ bool IsConvex(const Polytope& polytope, const Polytope::Edge& edge) {
 bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
                 const Vec3& n) {
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
-  const double least =
-      (edge.is_rim() ? -kSurfaceSlack : kSurfaceSlack) * along.norm();
+  const bool is_rim = edge.wings[0].isZero(0) || edge.wings[1].isZero(0);
+  const double least = (is_rim ? -kSurfaceSlack : kSurfaceSlack) * along.norm();
   const auto leaves = [&](const Vec3& wing, const Vec3& normal) {
     return !wing.isZero(0) && n.dot(normal) > least;
   };
@@ -83,7 +84,8 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   for (const Polytope::OneRingEntry& ring_entry : polytope.fan_of(vertex)) {
     if (ring_entry.edge >= 0) {
       const Polytope::Edge& edge = polytope.edges[ring_entry.edge];
-      is_rim |= edge.original && edge.is_rim();
+      is_rim |=
+          edge.original && (edge.wings[0].isZero(0) || edge.wings[1].isZero(0));
     }
     if (ring_entry.facet < 0 || !polytope.facets[ring_entry.facet].original)
       continue;

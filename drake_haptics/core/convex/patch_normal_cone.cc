@@ -107,7 +107,7 @@ void FillEdgeNormalArcs(Polytope* piece) {
   for (Polytope::Edge& edge : piece->edges) {
     edge.normal_arc = {Vec3::Zero(), Vec3::Zero()};
     const Vec3 &left = edge.wings[0], &right = edge.wings[1];
-    const bool is_rim = edge.is_rim();
+    const bool is_rim = left.isZero(0) || right.isZero(0);
     if (!edge.original || (left.isZero(0) && right.isZero(0))) continue;
     const Vec3 along = (piece->vertices[edge.v1] - piece->vertices[edge.v0])
                            .stableNormalized();

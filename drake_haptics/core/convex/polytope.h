@@ -37,9 +37,6 @@ struct Polytope {
     /// (patch_normal_cone.h).
     std::array<Vec3, 2> normal_arc{Vec3::Zero(), Vec3::Zero()};
     double turn = 0;  ///< see gauss_angle_bound.h
-
-    /// Whether the surface ends at the edge.
-    bool is_rim() const { return wings[0].isZero(0) || wings[1].isZero(0); }
   };
 
   struct Facet {
