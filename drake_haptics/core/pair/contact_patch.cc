@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -48,6 +49,17 @@ bool IsConcave(const Polytope::Edge& side, const Polytope& P, int facet) {
   return beyond.dot(P.facets[facet].normal) > kSurfaceSlack;
 }
 
+// Largest distance of a facet's corners from the first one, m.
+double SizeOf(const Polytope& P, int facet) {
+  const auto loop = P.loop_of(facet);
+  double squared = 0;
+  for (const int v : loop) {
+    squared =
+        std::max(squared, (P.vertices[v] - P.vertices[loop[0]]).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
 // The part of a contact that one pair of flush features carries.
 struct Part {
   std::optional<Vec3> center;
@@ -68,28 +80,31 @@ class Patch {
 
   Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
+    const double size_A = SizeOf(pair_.A, facet_A);
+    const double size_B = SizeOf(pair_.B, facet_B);
     // The first facet is cut at all its sides, so one that continues is second.
-    if (GoesOn(pair_.A, facet_A)) {
+    if (GoesOn(pair_.A, facet_A, size_B)) {
       for (const int v : pair_.B.loop_of(facet_B)) {
         workspace_.polygon.push_back(plane_.To(pair_.b(v)));
       }
       const Height of_B(
           plane_.To(pair_.X_AB.R * pair_.B.facets[facet_B].normal),
           workspace_.polygon[0]);
-      return Finish(CutByFacetOfA(facet_A), of_B, 1 / spread_);
+      return Finish(CutByFacetOfA(facet_A, size_B), of_B, 1 / spread_);
     }
     for (const int v : pair_.A.loop_of(facet_A)) {
       workspace_.polygon.push_back(plane_.To(pair_.a(v)));
     }
     const Height of_A(plane_.To(pair_.A.facets[facet_A].normal),
                       workspace_.polygon[0]);
-    return Finish(of_A, CutByFacetOfB(facet_B), 1 / spread_);
+    return Finish(of_A, CutByFacetOfB(facet_B, size_A), 1 / spread_);
   }
 
   Part OfEdgeOfA(int edge_A, int facet_B) {
     const Polytope::Edge& edge = pair_.A.edges[edge_A];
     const Height of_A = StartFromSegment(pair_.a(edge.v0), pair_.a(edge.v1));
-    return Finish(of_A, CutByFacetOfB(facet_B), layer_ / spread_);
+    return Finish(of_A, CutByFacetOfB(facet_B, SegmentLength()),
+                  layer_ / spread_);
   }
 
   // Surfaces fall away beside their edges, so the gap between edges that cross
@@ -138,19 +153,21 @@ class Patch {
   Part OfEdgeOfB(int facet_A, int edge_B) {
     const Polytope::Edge& edge = pair_.B.edges[edge_B];
     const Height of_B = StartFromSegment(pair_.b(edge.v0), pair_.b(edge.v1));
-    return Finish(CutByFacetOfA(facet_A), of_B, layer_ / spread_);
+    return Finish(CutByFacetOfA(facet_A, SegmentLength()), of_B,
+                  layer_ / spread_);
   }
 
  private:
-  Height CutByFacetOfA(int facet) {
+  // @param size size of the feature that is cut, m.
+  Height CutByFacetOfA(int facet, double size) {
     return Cut(
-        pair_.A, facet, [this](int v) { return pair_.a(v); },
+        pair_.A, facet, size, [this](int v) { return pair_.a(v); },
         pair_.A.facets[facet].normal);
   }
 
-  Height CutByFacetOfB(int facet) {
+  Height CutByFacetOfB(int facet, double size) {
     return Cut(
-        pair_.B, facet, [this](int v) { return pair_.b(v); },
+        pair_.B, facet, size, [this](int v) { return pair_.b(v); },
         pair_.X_AB.R * pair_.B.facets[facet].normal);
   }
 
@@ -176,28 +193,35 @@ class Patch {
     return Height(across.cross(along), workspace_.polygon[0]);
   }
 
-  bool GoesOn(const Polytope& P, int facet) const {
-    return std::ranges::any_of(SidesOf(P, facet), [&](int edge) {
-      return GoesOnBeyond(P.edges[edge], P, facet);
-    });
+  double SegmentLength() const {
+    return (workspace_.polygon[1] - workspace_.polygon[0]).norm();
   }
 
-  bool GoesOnBeyond(const Polytope::Edge& side, const Polytope& P,
-                    int facet) const {
-    return end_ != FacetEnd::kAllSides && IsConcave(side, P, facet);
+  // A facet continues only under a smaller feature, which then bounds the
+  // patch: that of a small facet on a wide table ends where the facet does.
+  bool MayGoOn(const Polytope& P, int facet, double size) const {
+    return end_ != FacetEnd::kAllSides && SizeOf(P, facet) > size;
+  }
+
+  bool GoesOn(const Polytope& P, int facet, double size) const {
+    return MayGoOn(P, facet, size) &&
+           std::ranges::any_of(SidesOf(P, facet), [&](int edge) {
+             return IsConcave(P.edges[edge], P, facet);
+           });
   }
 
   template <typename Position>
-  Height Cut(const Polytope& P, int facet, const Position& position,
-             const Vec3& normal_A) {
+  Height Cut(const Polytope& P, int facet, double size,
+             const Position& position, const Vec3& normal_A) {
     const auto loop = P.loop_of(facet);
     const Vec3 normal = plane_.To(normal_A);
     const Vec3 first = plane_.To(position(loop[0]));
     // Seen along n, A's loops run clockwise and B's counter-clockwise.
     const double turn = normal.z() > 0 ? 1.0 : -1.0;
     const auto sides = SidesOf(P, facet);
+    const bool may_go_on = MayGoOn(P, facet, size);
     for (std::size_t k = 0; k < loop.size(); ++k) {
-      if (GoesOnBeyond(P.edges[sides[k]], P, facet)) continue;
+      if (may_go_on && IsConcave(P.edges[sides[k]], P, facet)) continue;
       const Vec3 p = plane_.To(position(loop[k]));
       const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
       ClipPolygon(

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pair/witness.h"
+
 namespace drake_haptics {
 namespace {
 
@@ -21,7 +23,7 @@ bool ContactPersistence::Continues(const DepthCandidate& facet) const {
   PenetratingContact last{state_.distance, pair_.X_AB.R.transpose() * state_.n,
                           state_.p_b};
   last.Advance(pair_.X_AB, request_.last_X_AB);
-  return Follows(facet, last);
+  return Follows(facet, last) && IsNear(facet, last.motion);
 }
 
 bool ContactPersistence::IsTransferred(const DepthCandidate& facet) const {
@@ -51,6 +53,21 @@ void ContactPersistence::AppendWanted(std::vector<WantedFacets>* wanted) const {
 // Smallest gap of a facet that the motion since a contact explains, m.
 double ContactPersistence::LeastGap(const PenetratingContact& last) const {
   return last.distance - 2 * last.motion - kSinkShare * request_.tolerance;
+}
+
+// Whether the contact in the facet lies where both pieces are. Beyond them its
+// depth tells nothing: that of a tool's edge and the far rim of a table grows
+// with the tilt, by their distance.
+bool ContactPersistence::IsNear(const DepthCandidate& facet,
+                                double motion) const {
+  const Witness witness = WitnessOfFeatures(
+      pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
+  PenetratingContact now;
+  now.distance = facet.h;
+  now.motion = motion;
+  now.p_a = witness.p_a;
+  now.p_b = pair_.X_AB.inverse() * witness.p_b;
+  return now.IsNear(pair_.A, pair_.B);
 }
 
 // Whether the motion since a contact explains the facet's depth and turn.

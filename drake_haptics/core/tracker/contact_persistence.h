@@ -30,6 +30,7 @@ class ContactPersistence {
 
  private:
   double LeastGap(const PenetratingContact& last) const;
+  bool IsNear(const DepthCandidate& facet, double motion) const;
   bool Follows(const DepthCandidate& facet,
                const PenetratingContact& last) const;
 

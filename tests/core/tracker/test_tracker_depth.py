@@ -266,3 +266,30 @@ def test_a_depth_has_one_of_two_names() -> None:
     cube = box(CUBE)
     with pytest.raises(ValueError, match=r"^depth must be 'tracked' or 'global'"):
         SceneTracker(cube, [cube], T, depth="least")
+
+
+@pytest.mark.parametrize("name", ["cup.obj", "spoon.obj", "torus.obj"])
+def test_no_contact_with_a_wide_table_is_beside_the_tool_or_deeper(name: str) -> None:
+    """The edges and corners of a table are far beyond those of a tool that rocks on it.
+
+    An edge of the spoon was 23 mm deep at the rim half a meter away, once, and the cup
+    was pressed there.
+    """
+    tolerance = 2e-3
+    V = np.array(load_mesh(MODELS / name).vertices)
+    table = box((1.0, 1.0, 0.1))
+    on_a_side = Rotation.from_euler("x", [[0], [90], [180], [270]], degrees=True)
+    rng = np.random.default_rng(0)
+    for run in range(24):
+        rest = on_a_side[run % 4] if run < 12 else Rotation.random(random_state=run)
+        axis = rng.normal(size=3) * [1, 1, 0.3]
+        tracker = SceneTracker(model(name), [table], tolerance)
+        for k in range(80):
+            turn = Rotation.from_rotvec(0.06 * np.sin(k / 8) * axis) * rest
+            gap = 1.5e-3 - 2.5e-3 * min(k, 40) / 40
+            p_WT = np.array([0, 0, 0.05 + gap - turn.apply(V)[:, 2].min()])
+            contacts = tracker.query(pose(p_WT, np.roll(turn.as_quat(), 1)))
+            p_TCa = turn.inv().apply(contacts.p_WCa - p_WT)
+            assert (p_TCa > V.min(axis=0) - tolerance).all()
+            assert (p_TCa < V.max(axis=0) + tolerance).all()
+            assert (contacts.distance > gap - 1e-4).all()
