@@ -80,31 +80,32 @@ class Patch {
 
   Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
-    const double size_A = SizeOf(pair_.A, facet_A);
-    const double size_B = SizeOf(pair_.B, facet_B);
     // The first facet is cut at all its sides, so one that continues is second.
-    if (GoesOn(pair_.A, facet_A, size_B)) {
+    if (GoesOn(pair_.A, facet_A) &&
+        SizeOf(pair_.A, facet_A) > SizeOf(pair_.B, facet_B)) {
       for (const int v : pair_.B.loop_of(facet_B)) {
         workspace_.polygon.push_back(plane_.To(pair_.b(v)));
       }
       const Height of_B(
           plane_.To(pair_.X_AB.R * pair_.B.facets[facet_B].normal),
           workspace_.polygon[0]);
-      return Finish(CutByFacetOfA(facet_A, size_B), of_B, 1 / spread_);
+      return Finish(CutByFacetOfA(facet_A, true), of_B, 1 / spread_);
     }
     for (const int v : pair_.A.loop_of(facet_A)) {
       workspace_.polygon.push_back(plane_.To(pair_.a(v)));
     }
     const Height of_A(plane_.To(pair_.A.facets[facet_A].normal),
                       workspace_.polygon[0]);
-    return Finish(of_A, CutByFacetOfB(facet_B, size_A), 1 / spread_);
+    const bool goes_on = GoesOn(pair_.B, facet_B) &&
+                         SizeOf(pair_.B, facet_B) > SizeOf(pair_.A, facet_A);
+    return Finish(of_A, CutByFacetOfB(facet_B, goes_on), 1 / spread_);
   }
 
   Part OfEdgeOfA(int edge_A, int facet_B) {
     const Polytope::Edge& edge = pair_.A.edges[edge_A];
     const Height of_A = StartFromSegment(pair_.a(edge.v0), pair_.a(edge.v1));
-    return Finish(of_A, CutByFacetOfB(facet_B, SegmentLength()),
-                  layer_ / spread_);
+    const bool goes_on = GoesOnUnderSegment(pair_.B, facet_B);
+    return Finish(of_A, CutByFacetOfB(facet_B, goes_on), layer_ / spread_);
   }
 
   // Surfaces fall away beside their edges, so the gap between edges that cross
@@ -153,21 +154,21 @@ class Patch {
   Part OfEdgeOfB(int facet_A, int edge_B) {
     const Polytope::Edge& edge = pair_.B.edges[edge_B];
     const Height of_B = StartFromSegment(pair_.b(edge.v0), pair_.b(edge.v1));
-    return Finish(CutByFacetOfA(facet_A, SegmentLength()), of_B,
-                  layer_ / spread_);
+    const bool goes_on = GoesOnUnderSegment(pair_.A, facet_A);
+    return Finish(CutByFacetOfA(facet_A, goes_on), of_B, layer_ / spread_);
   }
 
  private:
-  // @param size size of the feature that is cut, m.
-  Height CutByFacetOfA(int facet, double size) {
+  // @param goes_on whether the facet continues beyond its concave sides.
+  Height CutByFacetOfA(int facet, bool goes_on) {
     return Cut(
-        pair_.A, facet, size, [this](int v) { return pair_.a(v); },
+        pair_.A, facet, goes_on, [this](int v) { return pair_.a(v); },
         pair_.A.facets[facet].normal);
   }
 
-  Height CutByFacetOfB(int facet, double size) {
+  Height CutByFacetOfB(int facet, bool goes_on) {
     return Cut(
-        pair_.B, facet, size, [this](int v) { return pair_.b(v); },
+        pair_.B, facet, goes_on, [this](int v) { return pair_.b(v); },
         pair_.X_AB.R * pair_.B.facets[facet].normal);
   }
 
@@ -193,25 +194,23 @@ class Patch {
     return Height(across.cross(along), workspace_.polygon[0]);
   }
 
-  double SegmentLength() const {
-    return (workspace_.polygon[1] - workspace_.polygon[0]).norm();
-  }
-
   // A facet continues only under a smaller feature, which then bounds the
   // patch: that of a small facet on a wide table ends where the facet does.
-  bool MayGoOn(const Polytope& P, int facet, double size) const {
-    return end_ != FacetEnd::kAllSides && SizeOf(P, facet) > size;
-  }
-
-  bool GoesOn(const Polytope& P, int facet, double size) const {
-    return MayGoOn(P, facet, size) &&
+  bool GoesOn(const Polytope& P, int facet) const {
+    return end_ != FacetEnd::kAllSides &&
            std::ranges::any_of(SidesOf(P, facet), [&](int edge) {
              return IsConcave(P.edges[edge], P, facet);
            });
   }
 
+  bool GoesOnUnderSegment(const Polytope& P, int facet) const {
+    const auto& segment = workspace_.polygon;
+    return GoesOn(P, facet) &&
+           SizeOf(P, facet) > (segment[1] - segment[0]).norm();
+  }
+
   template <typename Position>
-  Height Cut(const Polytope& P, int facet, double size,
+  Height Cut(const Polytope& P, int facet, bool goes_on,
              const Position& position, const Vec3& normal_A) {
     const auto loop = P.loop_of(facet);
     const Vec3 normal = plane_.To(normal_A);
@@ -219,9 +218,8 @@ class Patch {
     // Seen along n, A's loops run clockwise and B's counter-clockwise.
     const double turn = normal.z() > 0 ? 1.0 : -1.0;
     const auto sides = SidesOf(P, facet);
-    const bool may_go_on = MayGoOn(P, facet, size);
     for (std::size_t k = 0; k < loop.size(); ++k) {
-      if (may_go_on && IsConcave(P.edges[sides[k]], P, facet)) continue;
+      if (goes_on && IsConcave(P.edges[sides[k]], P, facet)) continue;
       const Vec3 p = plane_.To(position(loop[k]));
       const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
       ClipPolygon(

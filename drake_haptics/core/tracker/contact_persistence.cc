@@ -60,8 +60,8 @@ double ContactPersistence::LeastGap(const PenetratingContact& last) const {
 // with the tilt, by their distance.
 bool ContactPersistence::IsNear(const DepthCandidate& facet,
                                 double motion) const {
-  const Witness witness = WitnessOfFeatures(
-      pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
+  const Witness witness = WitnessOfFeatures(pair_, facet.feature_A,
+                                            facet.feature_B, facet.n, facet.h);
   PenetratingContact now;
   now.distance = facet.h;
   now.motion = motion;
