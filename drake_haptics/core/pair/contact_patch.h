@@ -52,7 +52,7 @@ inline constexpr double kSurelyFlush = 0.9;
 
 /// Sides at which a loaded facet ends. Beside a concave edge free space is an
 /// intersection of half-spaces, so the facet's plane and the pressure on it
-/// continue there.
+/// continue there, under a feature that is smaller than the facet.
 enum class FacetEnd { kConvexAndFlushSides, kAllSides };
 
 /// Finds the patch of a contact between nearly flush faces, or a face and an

@@ -12,7 +12,8 @@ namespace drake_haptics {
 
 /// Decides whether a contact of the last tick continues: on the same pair of
 /// pieces, or on another pair where the tool slides over a seam while it
-/// presses. Its depth may grow only as far as the motion there explains.
+/// presses. Its depth may grow only as far as the motion there explains, and it
+/// ends where one of the pieces does.
 class ContactPersistence {
  public:
   ContactPersistence(const PosedPair& pair, const SurfaceRequest& request,
