@@ -284,7 +284,9 @@ def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
         try:
             scene = change_scene(scene, settings)
         except SceneError as error:
-            raise HapticsError(f"--set {error}") from error
+            # A setting may have made another key of the scene wrong.
+            given = shlex.join(settings)
+            raise HapticsError(f"--set {given}: {error}") from error
     meshes = [scene.tool.mesh, *(item.mesh for item in scene.environment)]
     refuse_overwriting(map(resolve_package_url, meshes))
     return scene

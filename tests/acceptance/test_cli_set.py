@@ -137,3 +137,17 @@ def test_what_cannot_be_set_is_told_with_what_to_do(invoke, arguments, words):
     result = invoke("run", *arguments, *SHORT)
     assert result.exit_code == 1
     assert result.output.startswith("Error: --") and words in result.output
+
+
+def test_a_refusal_of_another_key_tells_what_was_set(invoke):
+    result = invoke(
+        "run", "sphere_pen", *SHORT, "--set", "environment.material.damping_Ns_per_m=3",
+        "--write-scene", "mine.yaml",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    result = invoke("run", "mine.yaml", *SHORT, "--set", "contact.law=constraint")
+    assert result.exit_code == 1
+    assert result.stderr.startswith(
+        "Error: --set contact.law=constraint:"
+        " environment[0].material.damping_Ns_per_m does nothing under"
+    )
