@@ -18,7 +18,7 @@ from drake_haptics.common.errors import SceneError
 from drake_haptics.report.plain_data import read_figures
 from drake_haptics.scene.scene_file import place_files
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Waypoint
-from drake_haptics.scene.validation import check_values
+from drake_haptics.scene.validation import check_values, require
 from drake_haptics.scene.yaml_loading import check_keys
 
 _INDEX = re.compile(r"\[\d+\]")
@@ -35,12 +35,27 @@ def change_scene(scene: Scene, settings: Iterable[str]) -> Scene:
 
     Raises:
         SceneError: A setting is not of that form, its key is unknown, its file does not
-            exist, or the value is impossible.
+            exist, the value is impossible, or the materials of all objects override it.
     """
-    changed = change_values(scene, [parse_setting(setting) for setting in settings])
+    changes = [parse_setting(setting) for setting in settings]
+    changed = change_values(scene, changes)
     check_values(changed)
+    for key, _ in changes:
+        part, _, name = key.partition(".")
+        require(
+            part != "contact" or not is_overridden(changed, name),
+            key,
+            "does nothing, since the material of each object gives its own: set"
+            f" environment.material.{name}",
+        )
     place_files(changed, Path.cwd())
     return changed
+
+
+def is_overridden(scene: Scene, name: str) -> bool:
+    """Returns whether the materials of all objects give a value."""
+    materials = (item.material for item in scene.environment)
+    return all(getattr(material, name, None) is not None for material in materials)
 
 
 def parse_setting(setting: str) -> tuple[str, Any]:

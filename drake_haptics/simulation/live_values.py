@@ -18,6 +18,7 @@ from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
 from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Scene
+from drake_haptics.scene.settings import is_overridden
 from drake_haptics.systems.contact.contact_clustering import (
     ClusteringMethod,
     ClusteringRule,
@@ -106,8 +107,8 @@ def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
     none.
     """
     is_left_out = {
-        "contact.stiffness_N_per_m": _is_overridden(scene, "stiffness_N_per_m"),
-        "contact.damping_Ns_per_m": _is_overridden(scene, "damping_Ns_per_m"),
+        "contact.stiffness_N_per_m": is_overridden(scene, "stiffness_N_per_m"),
+        "contact.damping_Ns_per_m": is_overridden(scene, "damping_Ns_per_m"),
         "contact.cluster_size_m": scene.contact.clustering != "octree",
     }
     return tuple(
@@ -131,15 +132,9 @@ def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
         if getattr(scene.effects, key.partition(".")[0]) is not None
         and not (
             key == "friction.coefficient"
-            and _is_overridden(scene, "friction_coefficient")
+            and is_overridden(scene, "friction_coefficient")
         )
     )
-
-
-def _is_overridden(scene: Scene, name: str) -> bool:
-    """Returns whether the materials of all objects give a value."""
-    materials = (item.material for item in scene.environment)
-    return all(getattr(material, name) is not None for material in materials)
 
 
 def _make_key(

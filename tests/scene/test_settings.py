@@ -48,6 +48,18 @@ def test_settings_that_need_each_other_count_together(scene):
     assert change_scene(scene, [size, kind]) == change_scene(scene, [kind, size])
 
 
+@pytest.mark.parametrize("name", ["stiffness_N_per_m", "damping_Ns_per_m"])
+def test_a_value_that_all_materials_override_is_refused(scene, name):
+    setting = f"contact.{name}=9"
+    own = change_scene(scene, [f"environment.material.{name}=5"])
+    with pytest.raises(
+        SceneError, match=rf"^contact.{name} does nothing.*environment.material.{name}"
+    ):
+        change_scene(own, [setting])
+    freed = change_scene(own, [setting, f"environment.material.{name}="])
+    assert getattr(freed.contact, name) == 9.0
+
+
 def test_files_are_found_from_the_current_folder(scene, tmp_path, monkeypatch):
     (tmp_path / "deep").mkdir()
     other = shutil.copy(scene.tool.mesh, tmp_path / "deep" / "other.obj")
