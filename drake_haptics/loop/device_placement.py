@@ -88,8 +88,8 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
                 " quaternion of the pose of length 1?"
                 if rejected
                 else f"the device has sent nothing for {timeout_s:g} s: is its driver"
-                " running at the address given, and does it serve no other host?"
-                " `drake-haptics device` is a driver to try, at udp://127.0.0.1:7400"
+                " or service running at the address given, and does it serve no other"
+                " host? For udp://, `drake-haptics device` is a driver to try"
             )
         time.sleep(_LOOK_AGAIN_S)
     check_reading(reading)

@@ -159,7 +159,7 @@ def test_no_energy_is_booked_for_a_device_that_nobody_simulates(scene):
 
 def test_a_silent_device_is_an_error_that_says_what_to_do():
     silent = ScriptedDevice(lambda _: None)
-    with pytest.raises(DeviceError, match=r"sent nothing for 0.05 s.*driver running"):
+    with pytest.raises(DeviceError, match=r"sent nothing for 0.05 s.*service running"):
         wait_for_reading(silent, timeout_s=0.05)
     assert silent.reads > 1
 
