@@ -152,7 +152,7 @@ def run_scene(
         )
     meshcat = None if headless and record is None else start_meshcat()
     # Includes the report, which a second Ctrl-C must not lose.
-    with lasting_interrupt() as check_interrupt:
+    with lasting_interrupt() as check_interrupt, naming(name, SceneError):
         session = run_session(
             console,
             scene,

@@ -19,6 +19,7 @@ from drake_haptics.analysis.stability_page import (
 from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
+from drake_haptics.cli.endings import naming
 from drake_haptics.cli.options import (
     FiniteRange,
     file_option,
@@ -28,7 +29,7 @@ from drake_haptics.cli.options import (
     set_option,
     write_json,
 )
-from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.report.page import check_page_path
 from drake_haptics.simulation.run import RunError
 
@@ -83,7 +84,7 @@ def stability(
     require_writable(path, "--out")
     try:
         check_page_path(path)
-        with progress_bar() as show:
+        with progress_bar() as show, naming(Path(scene).stem, SceneError):
             result = analyze_scene(
                 chosen, time_s, map_size=map_size, store=store, progress=show
             )

@@ -271,3 +271,10 @@ def test_a_cache_that_is_not_available_costs_only_time(folder, monkeypatch):
 def test_numbers_that_are_none_are_a_wrong_call(number):
     result = invoke("run", "scene.yaml", "--headless", "--duration", number)
     assert result.exit_code == 2 and "--duration" in result.stderr
+
+
+@pytest.mark.parametrize("command", [["run", "--headless"], ["stability"]])
+def test_a_scene_that_cannot_be_built_is_named(command, folder):
+    (folder / "far.yaml").write_text(SCENE.replace("}]}}", ", rpy_deg: [0, 0, 0]},"
+        " {time_s: 1, position_m: [9, 0, 0]}]}}"))  # fmt: skip
+    assert fails(invoke(command[0], "far.yaml", *command[1:]), "Error: far: hand.path:")
