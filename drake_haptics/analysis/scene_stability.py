@@ -70,7 +70,8 @@ class SceneStability:
         modes: All motions, fastest growing first.
         delay_margin_s: Additional delay at which the loop becomes unstable, s.
         limits: Limits of the coupling's stiffness in translation and in rotation, in
-            this contact and against a rigid wall; stiffnesses of zero are left out.
+            this contact, if there is one, and against a rigid wall; stiffnesses of zero
+            are left out.
         felt: Damping that makes the felt impedance passive, over frequency.
         damping_usage: Share of the damping of device and hand that this requires, at
             each frequency of `felt`; passive if it is at most 1.
@@ -209,7 +210,8 @@ def analyze_scene(
     point_s = time.perf_counter() - held_s
     felt = calc_felt_impedance(loop)
     passivity = calc_passivity(felt, felt.period_s)
-    limits = _find_limits(held, report)
+    contacts, force_N = _read_contact(loop)
+    limits = _find_limits(held, report, contacts > 0)
     delay_margin_s = calc_delay_margin(loop)
     map_ = None
     if map_size > 0:
@@ -226,7 +228,6 @@ def analyze_scene(
             progress=lambda done, total: report(what, done / total),
         )
     device = loop.haptic.loop.device
-    contacts, force_N = _read_contact(loop)
     return SceneStability(
         scene=held.scene,
         time_s=held.time_s,
@@ -246,7 +247,9 @@ def analyze_scene(
     )
 
 
-def _find_limits(held: HeldScene, report: Progress) -> tuple[StiffnessLimits, ...]:
+def _find_limits(
+    held: HeldScene, report: Progress, touches: bool
+) -> tuple[StiffnessLimits, ...]:
     """Returns the limits of the stiffnesses that the coupling has, contact first."""
     coupling = held.scene.coupling
     kinds: list[Kind] = []
@@ -255,6 +258,7 @@ def _find_limits(held: HeldScene, report: Progress) -> tuple[StiffnessLimits, ..
     if coupling.rotational_stiffness_Nm_per_rad > 0.0:
         kinds.append("rotation")
     cases: tuple[Against, ...] = ("this contact", "a rigid wall")
+    cases = cases if touches else cases[1:]
     return tuple(
         find_stiffness_limits(
             held, kind, against, partial(report, f"limit of {kind} against {against}")

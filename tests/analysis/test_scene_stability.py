@@ -86,6 +86,14 @@ def test_there_are_limits_of_both_stiffnesses_against_both(found):
     ]
 
 
+def test_a_tool_that_touches_nothing_has_limits_against_a_wall_alone(
+    scene, quick_limits
+):
+    free = analyze_scene(scene, 0.0, map_size=0)
+    assert free.num_contacts == 0
+    assert {limit.against for limit in free.limits} == {"a rigid wall"}
+
+
 def test_the_map_has_the_limits_edge_and_the_scenes_gains(found):
     contact = found.limits[0]
     K, B = found.map.stiffness, found.map.damping
