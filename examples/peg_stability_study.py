@@ -49,4 +49,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="How stiff a peg can be rendered.")
     default = Path("peg_stability_study.jsonl")
     parser.add_argument("file", nargs="?", type=Path, default=default)
-    main(parser.parse_args().file)
+    try:
+        main(parser.parse_args().file)
+    except KeyboardInterrupt as stop:  # it says what is done
+        raise SystemExit(str(stop)) from None

@@ -47,6 +47,16 @@ def test_example_runs(name, run):
     assert run(name)
 
 
+def test_the_study_that_is_interrupted_says_what_is_done(monkeypatch):
+    def interrupt(scene):
+        raise KeyboardInterrupt("Stopped. 3 of 27 tasks are done.")
+
+    monkeypatch.setattr("drake_haptics.analysis.hold_scene", interrupt)
+    monkeypatch.setattr(sys, "argv", ["peg_stability_study.py"])
+    with pytest.raises(SystemExit, match=r"3 of 27 tasks"):
+        runpy.run_path(str(EXAMPLES / "peg_stability_study.py"), run_name="__main__")
+
+
 @pytest.mark.parametrize(
     "name", ["arm_holding_a_tool.py", "cup_and_spoon.py", "peg_stability_study.py"]
 )
