@@ -27,10 +27,15 @@ class Surface:
         a, b, c = self._corners
         n = np.cross(b - a, c - a)
         self.normals = n / np.linalg.norm(n, axis=1, keepdims=True)
+        self._box = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Tells whether each of the points (n, 3) is inside."""
-        return winding_numbers(points, self.mesh.vertices, self.mesh.triangles) > 0.5
+        low, high = self._box
+        inside = ((points > low) & (points < high)).all(axis=1)
+        V, F = self.mesh.vertices, self.mesh.triangles
+        inside[inside] = winding_numbers(points[inside], V, F) > 0.5
+        return inside
 
     def distances(self, p: np.ndarray) -> np.ndarray:
         """Distance of a point (3,) from each triangle, m (Ericson 2005, 5.1.5)."""
@@ -116,18 +121,21 @@ class Overlap:
 
     def __call__(self, q_WT: np.ndarray) -> bool:
         """Tells whether, at a pose (7,), surfaces cross or the tool is inside."""
-        R, p = rotation_of(q_WT), q_WT[4:7]
+        first = rotation_of(q_WT) @ self._tool.vertices[0] + q_WT[4:7]
+        return self.crosses(q_WT) or bool(self._solid.holds(first[None])[0])
+
+    def crosses(self, q_WT: np.ndarray) -> bool:
+        """Tells whether surfaces cross: enough for a tool that comes from outside."""
         result = coal.CollisionResult()
         coal.collide(
             self._models[0],
-            coal.Transform3s(R, p),
+            coal.Transform3s(rotation_of(q_WT), q_WT[4:7]),
             self._models[1],
             coal.Transform3s.Identity(),
             coal.CollisionRequest(),
             result,
         )
-        first = R @ self._tool.vertices[0] + p
-        return result.isCollision() or bool(self._solid.holds(first[None])[0])
+        return bool(result.isCollision())
 
 
 def _triangle_model(mesh: Mesh) -> coal.BVHModelOBBRSS:

@@ -116,14 +116,15 @@ def draw_landings(mesh, overlap, count):
         if overlap(at(free_m)):
             continue
         deep_m = next(
-            (h for h in np.arange(free_m, deep_m, -3e-4) if overlap(at(h))), None
+            (h for h in np.arange(free_m, deep_m, -3e-4) if overlap.crosses(at(h))),
+            None,
         )
         if deep_m is None:
             continue
         free_m = deep_m + 3e-4
         for _ in range(20):
             middle_m = (free_m + deep_m) / 2
-            if overlap(at(middle_m)):
+            if overlap.crosses(at(middle_m)):
                 deep_m = middle_m
             else:
                 free_m = middle_m
@@ -152,15 +153,19 @@ def test_first_after_a_step_and_global_agree(name):
     tool, solid = decompose(tool_mesh, cache=False), decompose(mesh)
     landings = draw_landings(mesh, Overlap(tool_mesh, Surface(mesh)), 20)
     assert landings
+    trackers = {
+        key: SceneTracker(tool, [solid], key[1], depth=key[0])
+        for key in product(("tracked", "global"), (0.0, 1e-4))
+    }
     compared = 0
     for k, (before, now) in enumerate(landings):
         tolerance_m = (0.0, 1e-4)[k % 2]
         found = {}
         for depth in ("tracked", "global"):
-            found[depth] = SceneTracker(tool, [solid], tolerance_m, depth=depth).query(
-                now
-            )
-            tracker = SceneTracker(tool, [solid], tolerance_m, depth=depth)
+            tracker = trackers[depth, tolerance_m]
+            tracker.reset()
+            found[depth] = tracker.query(now)
+            tracker.reset()
             assert min(tracker.query(before).distance, default=1.0) >= 0
             found[f"{depth}, after a step"] = tracker.query(now)
         step_m = np.linalg.norm(now[4:] - before[4:])
