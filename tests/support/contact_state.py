@@ -7,6 +7,7 @@ again at each displaced pose.
 from __future__ import annotations
 
 import copy
+import functools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -81,8 +82,9 @@ class State:
         V[body] += by
         return replace(self, V=V)
 
+    @functools.cached_property
     def contacts(self) -> _core.ContactSet:
-        """Returns the contacts of the query here."""
+        """The contacts of the query here."""
         tracker = copy.deepcopy(self.tracker)
         for i, q in enumerate(self.q[1:]):
             tracker.set_object_pose(i, q)
@@ -96,7 +98,7 @@ class State:
 
     def wrench(self) -> _core.PenaltyWrench:
         """Returns the chain of doubles."""
-        clusters = self.cluster(self.contacts())
+        clusters = self.cluster(self.contacts)
         m = len(self.bodies) - 1
         return _core.penalty_force(
             clusters,
@@ -113,7 +115,7 @@ class State:
     ) -> _core.AutoDiffContactSet:
         """The query's answer, or `contacts` of it, with its derivatives by `x`."""
         if contacts is None:
-            contacts = self.contacts()
+            contacts = self.contacts
         x = seeded(self.x)
         tool, *poses = (_rows(x, [13 * i], 7) for i in range(len(self.bodies)))
         return _core.differentiate_contacts(
@@ -150,7 +152,7 @@ class State:
 
     def features(self) -> list[object]:
         """All that must stay for the derivatives to exist, as far as it is told."""
-        contacts = self.contacts()
+        contacts = self.contacts
         clusters = self.cluster(contacts)
         pieces = [contacts.object_index, contacts.piece_A, contacts.piece_B]
         columns = [*pieces, contacts.feature_A, contacts.feature_B, contacts.status]
@@ -226,7 +228,7 @@ def random_states(
             tracker.query(q[0])
         V = 0.1 * rng.normal(size=(1 + num_objects, 6))
         state = State((tool, *[solid] * num_objects), tracker, method, q, V)
-        if (state.contacts().distance < T).any():
+        if (state.contacts.distance < T).any():
             found.append(state)
     return found
 

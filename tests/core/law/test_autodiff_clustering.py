@@ -18,7 +18,7 @@ COLUMNS = ("distance", "nhat_BA_W", "p_WC", "compression", "damping_share", "cou
 
 
 def clusters(state: State) -> _core.ClusterSet:
-    return state.cluster(state.contacts())
+    return state.cluster(state.contacts)
 
 
 def differentiate(state: State) -> _core.AutoDiffClusterSet:
@@ -96,7 +96,7 @@ def test_contacts_in_one_place_have_finite_derivatives() -> None:
     q = np.array([[1, 0, 0, 0, 0, 0, 0.01 - 1e-3], [1, 0, 0, 0, 0, 0, 0]])
     tracker = _core.SceneTracker(twice, [ground], T)
     state = State((twice, ground), tracker, "shared", q, np.zeros((2, 6)))
-    contacts = state.contacts()
+    contacts = state.contacts
     assert len(contacts) == 2
     np.testing.assert_array_equal(contacts.p_WC[0], contacts.p_WC[1])
     found = differentiate(state)

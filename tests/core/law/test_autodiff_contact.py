@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from operator import attrgetter
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from drake_haptics import _core
 from drake_haptics._core import AutoDiffVector
 
 STEP = 5e-7
+CONTACTS = attrgetter("contacts")
 COLUMNS = ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC", "extent", "flushness")
 
 
@@ -27,9 +29,7 @@ def test_every_column_has_its_derivatives(pairs, name: str) -> None:
         near.at(near.x * np.tile([1.1] * 4 + [1.0] * 9, 3))
         for near in random_states(*pairs[name], "shared", 12)
     )
-    check_every_column(
-        states, State.contacts, State.differentiate_contacts, COLUMNS, STEP
-    )
+    check_every_column(states, CONTACTS, State.differentiate_contacts, COLUMNS, STEP)
 
 
 def states_on_a_cut_face(count: int) -> list[State]:
@@ -51,7 +51,7 @@ def states_on_a_cut_face(count: int) -> list[State]:
 def test_parts_of_a_cut_face_have_their_derivatives() -> None:
     check_every_column(
         states_on_a_cut_face(40),
-        State.contacts,
+        CONTACTS,
         State.differentiate_contacts,
         COLUMNS,
         STEP,
@@ -71,7 +71,7 @@ def test_values_have_the_derivatives_of_the_query_again() -> None:
 def test_values_are_those_of_the_query(pairs) -> None:
     for pair in pairs.values():
         for state in random_states(*pair, "shared", 10):
-            contacts, found = state.contacts(), state.differentiate_contacts()
+            contacts, found = state.contacts, state.differentiate_contacts()
             assert len(found) == len(contacts)
             others = ("object_index", "piece_A", "piece_B", "feature_A", "feature_B")
             for key in (*COLUMNS, *others, "status"):
@@ -94,7 +94,7 @@ def test_derivatives_are_by_whatever_the_poses_depend_on(pairs) -> None:
     M = np.random.default_rng(0).normal(size=(len(state.x), 3))
     poses = [AutoDiffVector(q, M[13 * i : 13 * i + 7]) for i, q in enumerate(state.q)]
     found = _core.differentiate_contacts(
-        state.contacts(),
+        state.contacts,
         T,
         state.bodies[0],
         poses[0],
@@ -131,7 +131,7 @@ def test_bodies_that_move_together_keep_their_contacts(pairs) -> None:
         dp = shift + np.cross(spin, q[4:])
         poses.append(AutoDiffVector(q, np.array([*dq, *dp])[:, None]))
     found = _core.differentiate_contacts(
-        state.contacts(),
+        state.contacts,
         T,
         state.bodies[0],
         poses[0],
@@ -160,7 +160,7 @@ def test_no_contacts_and_no_variables_are_as_good(pairs) -> None:
     state = one(pairs["box on box"])
     tool_pose, *poses = (constant(q, 0) for q in state.q)
     plain = _core.differentiate_contacts(
-        state.contacts(), T, state.bodies[0], tool_pose, list(state.bodies[1:]), poses
+        state.contacts, T, state.bodies[0], tool_pose, list(state.bodies[1:]), poses
     )
     assert plain.num_derivatives == 0
     padded = plain.with_variables(4)
@@ -203,11 +203,11 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
     cup = next(
         s
         for s in random_states(*pairs["spoon in cup"], "shared", 20)
-        if s.contacts().piece_B.max() > 0
+        if s.contacts.piece_B.max() > 0
     )
     with pytest.raises(IndexError):
         _core.differentiate_contacts(
-            cup.contacts(),
+            cup.contacts,
             T,
             cup.bodies[0],
             q,
@@ -218,11 +218,11 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
     peg = next(
         s
         for s in random_states(*pairs["peg in torus"], "shared", 40)
-        if s.contacts().feature_A[:, 1].max() > 11
+        if s.contacts.feature_A[:, 1].max() > 11
     )
     with pytest.raises(IndexError, match="feature"):
         _core.differentiate_contacts(
-            peg.contacts(),
+            peg.contacts,
             T,
             tool,
             q,

@@ -29,10 +29,10 @@ def differences(
     state: State, move: Callable[[np.ndarray], State], step: float
 ) -> np.ndarray | None:
     """The derivative (6, 6), or nothing where features change."""
-    columns = []
+    columns, features = [], state.features()
     for e in np.eye(6):
         ahead, behind = move(step * e), move(-step * e)
-        if not ahead.features() == behind.features() == state.features():
+        if not ahead.features() == behind.features() == features:
             return None
         columns.append((wrench(ahead) - wrench(behind)) / (2 * step))
     return np.array(columns).T
@@ -92,7 +92,7 @@ def test_by_the_velocities(pairs, method: str) -> None:
             move = differences(state, lambda by, s=state, b=body: s.faster(b, by), 1e-6)
             np.testing.assert_allclose(found.by_V[body], move, atol=1e-6)
         # The wrench model's B is minus that by the tool's velocity.
-        contacts = state.contacts()
+        contacts = state.contacts
         model = _core.penalty_force(
             state.cluster(contacts),
             state.q[0, 4:],
