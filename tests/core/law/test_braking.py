@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from contact_samples import box, hull, pose
-from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
 
@@ -34,9 +33,9 @@ def slabs_around(normals: Sequence[object], gaps: Sequence[float]) -> _core.Cont
     for i, (normal, gap) in enumerate(zip(normals, gaps, strict=True)):
         n = np.asarray(normal, float) / np.linalg.norm(normal)
         # The face is z = 0 of the slab, put below the ball's outermost vertex.
-        x, y, z, w = Rotation.align_vectors([n], [[0, 0, 1]])[0].as_quat()
+        q = np.array([1 + n[2], -n[1], n[0], 0])
         reach = max(BALL.vertices @ -n)
-        tracker.set_object_pose(i, pose(-(reach + gap) * n, (w, x, y, z)))
+        tracker.set_object_pose(i, pose(-(reach + gap) * n, q / np.linalg.norm(q)))
     return tracker.query(pose([0, 0, 0]))
 
 
