@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -199,7 +199,6 @@ vectors = st.lists(numbers, min_size=6, max_size=6).map(np.array)
 small = st.floats(-10, 10)
 
 
-@settings(max_examples=300)
 @given(
     st.lists(
         st.tuples(

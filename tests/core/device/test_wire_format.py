@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from packet_samples import A_COMMAND, A_STATE
 
@@ -96,7 +96,6 @@ def test_the_sizes_are_those_documented() -> None:
     assert len(_core.pack_command(**A_COMMAND)) == 88
 
 
-@settings(max_examples=200)
 @given(COMMANDS)
 def test_a_command_has_the_documented_bytes_and_comes_back(command: Any) -> None:
     packet = command_bytes(command)
@@ -105,7 +104,6 @@ def test_a_command_has_the_documented_bytes_and_comes_back(command: Any) -> None
     assert_same(_core.unpack_command(packet), command)
 
 
-@settings(max_examples=200)
 @given(STATES)
 def test_a_state_has_the_documented_bytes_and_comes_back(state: Any) -> None:
     packet = state_bytes(state)
