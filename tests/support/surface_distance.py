@@ -6,8 +6,9 @@ import numpy as np
 def winding_numbers(points, V, F):
     """Returns how often the surface winds about each point (van Oosterom, Strackee)."""
     result = []
+    corners = np.swapaxes(V[F], 0, 1).copy()
     for p in points:
-        a, b, c = (V[F[:, k]] - p for k in range(3))
+        a, b, c = corners - p
         la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
         numerator = (a * np.cross(b, c)).sum(axis=1)
         denominator = (
