@@ -62,6 +62,22 @@ def cup(change: Callable[[Scene], None] = id):
     return [build(scene, chained) for chained in (True, False)]
 
 
+def cluster(scene: Scene, clustering: str) -> None:
+    scene.contact.clustering = clustering
+    scene.contact.cluster_size_m = 5e-3 if clustering == "octree" else None
+
+
+@pytest.fixture(scope="module")
+def plain():
+    """States of the cup's scene without an effect, up to 0.9 s, by its clustering."""
+    found = {}
+    for clustering in ("shared", "octree"):
+        scene = load_scene(find_scene("cup_spoon"))
+        cluster(scene, clustering)
+        found[clustering] = run(build(scene, True), 0.9)
+    return found
+
+
 def add_friction(scene: Scene) -> None:
     scene.effects.friction = FrictionParameters()
 
@@ -237,18 +253,18 @@ def test_gains_rule_and_tolerance_that_change_mid_run_count_at_once() -> None:
     assert np.abs(steps).max(axis=1).min() > 1e-3
 
 
-def test_other_wrenches_count_beside_the_chain() -> None:
+def test_other_wrenches_count_beside_the_chain(plain) -> None:
     def add_gravity(scene: Scene) -> None:
         scene.effects.gravity = GravityParameters()
 
     chained, separate = cup(add_gravity)
     heavy = run(chained, 0.75)
     assert_same(heavy, run(separate, 0.75))
-    weightless = run(cup()[0], 0.75)
-    assert np.abs(heavy[-1] - weightless[-1]).max() > 1e-6
+    weightless = plain["shared"][len(heavy) - 1]
+    assert np.abs(heavy[-1] - weightless).max() > 1e-6
 
 
-def test_friction_is_found_from_the_chain_bit_by_bit() -> None:
+def test_friction_is_found_from_the_chain_bit_by_bit(plain) -> None:
     chained, separate = cup(add_friction)
     assert chained.loop.effects.friction.HasInputPort("contact_chain")
     assert not separate.loop.effects.friction.HasInputPort("contact_chain")
@@ -259,13 +275,15 @@ def test_friction_is_found_from_the_chain_bit_by_bit() -> None:
             [step.f_cluster_W.ravel(), step.next_state, read_state(haptic, root)]
         )
 
-    rough = run(chained, 0.9, read_friction)
-    assert_same(rough, run(separate, 0.9, read_friction))
-    slippery = run(cup()[0], 0.9)
-    assert np.abs(rough[-1][-19:] - slippery[-1]).max() > 1e-3
+    def read_all(haptic: HapticDiagram, root: Context) -> np.ndarray:
+        between = read_between(haptic, root)
+        return np.concatenate([between, read_friction(haptic, root)])
+
+    rough, separately = run(chained, 0.9, read_friction), run(separate, 0.9, read_all)
+    assert np.abs(rough[-1][-19:] - plain["shared"][-1]).max() > 1e-3
     # Reading what is between changes nothing, and is the same.
-    between = run(chained, 0.9, read_between)
-    assert_same(between, run(separate, 0.9, read_between))
+    assert_same(run(chained, 0.9, read_all), separately)
+    assert_same(rough, [x[-len(y) :] for x, y in zip(separately, rough, strict=True)])
 
 
 def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain() -> None:
@@ -308,24 +326,21 @@ ALL = Effects(
     ids=["shading", "braking", "all", "octree"],
 )
 def test_effects_that_read_contacts_find_them_in_the_chain_bit_by_bit(
-    effects: Effects, clustering: str
+    plain, effects: Effects, clustering: str
 ) -> None:
-    def cluster(scene: Scene) -> None:
-        scene.contact.clustering = clustering
-        scene.contact.cluster_size_m = 5e-3 if clustering == "octree" else None
-
     def add_effects(scene: Scene) -> None:
-        cluster(scene)
+        cluster(scene, clustering)
         scene.effects = effects
 
+    def read_all(haptic: HapticDiagram, root: Context) -> np.ndarray:
+        return np.concatenate([read_between(haptic, root), read_state(haptic, root)])
+
     chained, separate = cup(add_effects)
-    felt = run(chained, 0.9)
-    assert_same(felt, run(separate, 0.9))
-    plain = run(cup(cluster)[0], 0.9)
-    assert np.abs(felt[-1] - plain[-1]).max() > 1e-4
+    felt, separately = run(chained, 0.9), run(separate, 0.9, read_all)
+    assert np.abs(felt[-1] - plain[clustering][-1]).max() > 1e-4
     # Reading what is between changes nothing, and is the same.
-    between = run(chained, 0.9, read_between)
-    assert_same(between, run(separate, 0.9, read_between))
+    assert_same(run(chained, 0.9, read_all), separately)
+    assert_same(felt, [x[-19:] for x in separately])
 
 
 @pytest.mark.filterwarnings(f"ignore::{SceneWarning.__module__}.SceneWarning")
