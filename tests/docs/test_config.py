@@ -66,25 +66,29 @@ def test_the_small_example_comes_from_outside_and_is_felt(tmp_path):
     assert 1.0 < run(haptic, duration_s=1.5).max_force_N < 8.0, "below the limit"
 
 
-def test_the_words_are_those_that_are_known():
+@pytest.fixture(scope="module")
+def scene_rules():
+    return find_rules(FILES["scene"].load, DOCS / FILES["scene"].example)
+
+
+def test_the_words_are_those_that_are_known(scene_rules):
     page = (DOCS / "reference" / "scene-file.md").read_text()
     (table,) = re.findall(r"\| key \| value .*?\n\n", page, re.DOTALL)
     cells = [line.split("|")[2] for line in table.splitlines() if line]
     words = re.findall(r"`(\w+)`", " ".join(cells))
-    rules = find_rules(FILES["scene"].load, DOCS / FILES["scene"].example)
-    known = [rules[k] for k in ("tool.decomposition", "contact.clustering")]
-    known += [rules["contact.depth"], f"known: {', '.join(HAND_GRIPS)}"]
+    keys = ("tool.decomposition", "contact.clustering", "contact.depth")
+    known = [*(scene_rules[key] for key in keys), f"known: {', '.join(HAND_GRIPS)}"]
     expected = ", ".join(text.removeprefix("known: ") for text in known)
     assert words == expected.split(", ")
 
 
-def test_rules_are_what_the_program_says(tmp_path):
-    rules = find_rules(FILES["scene"].load, DOCS / FILES["scene"].example)
-    assert rules["contact.stiffness_N_per_m"] == "must be positive"
-    assert rules["contact.depth"] == "known: tracked, global"
-    assert rules["tool.mesh"] == "is missing"
-    assert rules["hand.path.waypoints[].time_s"] == "must be later than the one before"
-    assert "device.twin" not in rules
+def test_rules_are_what_the_program_says(scene_rules, tmp_path):
+    assert scene_rules["contact.stiffness_N_per_m"] == "must be positive"
+    assert scene_rules["contact.depth"] == "known: tracked, global"
+    assert scene_rules["tool.mesh"] == "is missing"
+    time_rule = scene_rules["hand.path.waypoints[].time_s"]
+    assert time_rule == "must be later than the one before"
+    assert "device.twin" not in scene_rules
 
     def load(path):
         if yaml.safe_load(path.read_text())["a"] < 0:
