@@ -11,20 +11,24 @@ RUN = ["run", "scene.yaml", "--headless", "--duration", "0.002"]
 MESHES = ["run", "--tool", "pen.obj", "--environment", "ball.obj", *RUN[2:]]
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    """Is the folder of work, with a scene, its meshes and a log."""
-    monkeypatch.chdir(tmp_path)
-    shutil.copy(find_mesh("pen"), "pen.obj")
-    shutil.copy(find_mesh("sphere"), "ball.obj")
-    scene = find_scene("sphere_pen").read_text()
-    scene = scene.replace("../meshes/pen.obj", "pen.obj")
-    (tmp_path / "scene.yaml").write_text(
-        scene.replace("../meshes/sphere.obj", "ball.obj")
-    )
-    assert invoke(*RUN, "--log", "run.tick").exit_code == 0
-    shutil.copy("run.tick", "run.csv")
-    return tmp_path
+@pytest.fixture(scope="module", autouse=True)
+def folder(tmp_path_factory):
+    """Is the folder of work, with a scene, its meshes, a log and a link."""
+    folder = tmp_path_factory.mktemp("work")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for copy in ("pen.obj", "other.obj"):
+            shutil.copy(find_mesh("pen"), copy)
+        shutil.copy(find_mesh("sphere"), "ball.obj")
+        scene = find_scene("sphere_pen").read_text()
+        scene = scene.replace("../meshes/pen.obj", "pen.obj")
+        (folder / "scene.yaml").write_text(
+            scene.replace("../meshes/sphere.obj", "ball.obj")
+        )
+        (folder / "link").symlink_to("scene.yaml")
+        assert invoke(*RUN, "--log", "run.tick").exit_code == 0
+        shutil.copy("run.tick", "run.csv")
+        yield folder
 
 
 @pytest.mark.parametrize(
@@ -70,8 +74,6 @@ def folder(tmp_path, monkeypatch):
     ],
 )
 def test_an_input_is_not_overwritten(folder, arguments, option, file):
-    shutil.copy("pen.obj", "other.obj")
-    (folder / "link").symlink_to("scene.yaml")
     before = {path: path.read_bytes() for path in folder.iterdir()}
     result = invoke(*arguments)
     assert result.exit_code == 1
