@@ -1,5 +1,6 @@
 """What the terminal shows during a run."""
 
+import copy
 import io
 import itertools
 import re
@@ -144,21 +145,29 @@ def test_what_a_slow_loop_leaves_out_is_said():
     assert "far near-contacts in 20 ticks" in console.file.getvalue()
 
 
-def test_a_file_gets_no_status(haptic):
-    text, _ = run_with_status(haptic, terminal=False)
-    assert text == ""
+@pytest.fixture(scope="module")
+def to_a_file(haptic):
+    return run_with_status(haptic, terminal=False)
 
 
-def test_the_summary_has_the_figures(haptic):
-    _, figures = run_with_status(haptic, terminal=False)
+@pytest.fixture
+def figures(to_a_file):
+    """Figures of a run, for a test to change."""
+    return copy.deepcopy(to_a_file[1])
+
+
+def test_a_file_gets_no_status(to_a_file):
+    assert to_a_file[0] == ""
+
+
+def test_the_summary_has_the_figures(figures):
     text = io.StringIO()
     Console(file=text, width=320).print(make_summary(figures))
     assert f"force {figures['max_force_N']:.2f} N" in text.getvalue()
     assert "1,500 ticks" in text.getvalue()
 
 
-def test_a_force_without_penetration_is_explained(haptic):
-    _, figures = run_with_status(haptic, terminal=False)
+def test_a_force_without_penetration_is_explained(figures):
     for distance_m, is_explained in [(-1e-4, False), (4.2e-4, True), (None, False)]:
         text = io.StringIO()
         figures["least_distance_m"] = distance_m
@@ -167,8 +176,7 @@ def test_a_force_without_penetration_is_explained(haptic):
         assert ("came within 0.420 mm" in text.getvalue()) == is_explained
 
 
-def test_ticks_longer_than_their_period_are_told_of_with_what_helps(haptic):
-    _, figures = run_with_status(haptic, terminal=False)
+def test_ticks_longer_than_their_period_are_told_of_with_what_helps(figures):
     for ticks, p99_us, most, is_slow, is_many in [
         (1500, 999.0, 500, False, False),
         (1500, 1001.0, 4, True, False),
@@ -184,9 +192,8 @@ def test_ticks_longer_than_their_period_are_told_of_with_what_helps(haptic):
         assert ("max_triangles" in text.getvalue()) == is_many
 
 
-def energy_line(haptic, **changes):
+def energy_line(figures, **changes):
     """The summary of a run in which a part has other books."""
-    _, figures = run_with_status(haptic, terminal=False)
     for name, books in changes.items():
         figures["energy_J"][name] |= books
     text = io.StringIO()
@@ -195,17 +202,17 @@ def energy_line(haptic, **changes):
     return next(line for line in lines if line.startswith("energy"))
 
 
-def test_the_summary_says_where_the_energy_went(haptic):
+def test_the_summary_says_where_the_energy_went(figures):
     none = {name: {"beyond": 1e-12} for name in ("coupling", "contact", "tool")}
-    line = energy_line(haptic, device={"in": 0.0123, "out": 0.0045}, **none)
+    line = energy_line(figures, device={"in": 0.0123, "out": 0.0045}, **none)
     assert "hand put in 12.3 mJ, got back 4.5 mJ" in line
     assert line.endswith("; good: no part made energy beyond what sampling explains")
 
 
-def test_the_summary_names_what_makes_energy(haptic):
+def test_the_summary_names_what_makes_energy(figures):
     parts = {"contact": {"beyond": 2.5e-4}, "coupling": {"beyond": 1e-3}}
     line = energy_line(
-        haptic, device={"in": 0.01, "beyond": 0.0}, tool={"beyond": 0.0}, **parts
+        figures, device={"in": 0.01, "beyond": 0.0}, tool={"beyond": 0.0}, **parts
     )
     assert line.endswith(
         "made beyond what sampling explains: coupling 1 mJ, contact 0.25 mJ, at most"
@@ -213,12 +220,12 @@ def test_the_summary_names_what_makes_energy(haptic):
     )
 
 
-def test_the_summary_tells_what_energy_the_hand_may_feel(haptic):
+def test_the_summary_tells_what_energy_the_hand_may_feel(figures):
     device = {"in": 0.01, "beyond": 5e-4}
-    line = energy_line(haptic, device=device, coupling={"beyond": 1e-3})
+    line = energy_line(figures, device=device, coupling={"beyond": 1e-3})
     assert "the loop as a whole made 0.5 mJ, 5 % of what the hand put in" in line
     assert "good" not in line and "lower contact or coupling gains" in line
-    line = energy_line(haptic, device=device | {"in": 0.0})
+    line = energy_line(figures, device=device | {"in": 0.0})
     assert "and the hand put in none" in line and "good" not in line
 
 
