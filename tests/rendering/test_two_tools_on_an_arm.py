@@ -1,4 +1,4 @@
-"""Two spatulas lean in holders on one arm, with friction and gravity, for 10 s."""
+"""Two spatulas lean in holders on one arm, with friction and gravity."""
 
 from __future__ import annotations
 
@@ -28,12 +28,15 @@ STILL_J = 1e-7
 Y_M = (-0.05, 0.05)
 
 
-def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray]:
-    """Simulates 10 s; returns time series, a row for each spatula.
+def rest_on_an_arm(
+    folder: Path, angular_damping: float, duration_s: float
+) -> dict[str, np.ndarray]:
+    """Returns time series, a row for each spatula.
 
     Args:
         folder: For the mesh of a holder.
         angular_damping: Of the spatulas' free joints, N·m·s/rad.
+        duration_s: Time that is simulated, s.
 
     Returns:
         `spin`, about the shaft, rad/s; `yaw`, rad; `kinetic` energy, J; `support`,
@@ -88,7 +91,7 @@ def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray
         X_WT = RigidTransform(lean, [0.15, y, TOLERANCE_M - 0.04])
         plant.GetJointByName(f"free{n}").SetPose(scene.context, X_WT)
     rows = []
-    for tick in range(round(10.0 / TICK_S)):
+    for tick in range(round(duration_s / TICK_S)):
         scene.simulator.AdvanceTo((tick + 1) * TICK_S)
         row = []
         for n, rendering in enumerate(renderings):
@@ -113,28 +116,37 @@ def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray
 
 
 @pytest.mark.filterwarnings("ignore:Drake's own contact")
-@pytest.mark.parametrize("angular_damping", [0.0, 1e-4])
-def test_two_spatulas_stand_in_their_holders(tmp_path, angular_damping):
+@pytest.mark.parametrize(
+    ("angular_damping", "duration_s"),
+    [
+        (0.0, 10.0),
+        # Still after 4 s.
+        (1e-4, 6.0),
+    ],
+)
+def test_two_spatulas_stand_in_their_holders(tmp_path, angular_damping, duration_s):
     """One may rock about the line through its two contacts; neither turns for ever.
 
     Points of contact bear no torque about the line through them, and what rolls there
     neither slides nor approaches: nothing takes energy out, but nothing adds any.
     """
-    found = rest_on_an_arm(tmp_path, angular_damping)
+    found = rest_on_an_arm(tmp_path, angular_damping, duration_s)
     third, last = np.split(found["yaw"], 4, axis=1)[2:]
-    assert not found["slides"][:, 250:].any()
-    assert found["support"][:, 250:].mean(axis=1) == pytest.approx(
+    half, late = 2 * last.shape[1], 3 * last.shape[1]
+    assert not found["slides"][:, half:].any()
+    assert found["support"][:, half:].mean(axis=1) == pytest.approx(
         np.full(2, MASS * 9.81), rel=0.02
     )
-    assert last.mean(axis=1) == pytest.approx(third.mean(axis=1), abs=np.radians(0.25))
+    drift = np.radians(0.025) * duration_s
+    assert last.mean(axis=1) == pytest.approx(third.mean(axis=1), abs=drift)
     assert np.ptp(last, axis=1).max() < np.radians(5.0)
     for kinetic in found["kinetic"]:
-        assert kinetic[375:].max() <= max(1.2 * kinetic[250:375].max(), STILL_J)
+        assert kinetic[late:].max() <= max(1.2 * kinetic[half:late].max(), STILL_J)
     for spin, across in zip(found["spin"], found["across"], strict=True):
-        if np.abs(spin[375:]).max() > 0.1:
+        if np.abs(spin[late:]).max() > 0.1:
             # It rocks: always on two contacts, about the line through them.
-            assert np.isfinite(across[375:]).mean() > 0.95
-            assert np.nanmax(across[375:]) < 0.2 * np.abs(spin[375:]).max()
+            assert np.isfinite(across[late:]).mean() > 0.95
+            assert np.nanmax(across[late:]) < 0.2 * np.abs(spin[late:]).max()
     if angular_damping:
-        assert np.abs(found["spin"][:, 375:]).max() < 1e-2
-        assert found["kinetic"][:, 375:].max() < STILL_J
+        assert np.abs(found["spin"][:, late:]).max() < 1e-2
+        assert found["kinetic"][:, late:].max() < STILL_J
