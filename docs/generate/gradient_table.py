@@ -171,8 +171,8 @@ def _of_drake(state: State, moves: bool) -> dict[str, float]:
     chain = ContactChain(state, (moves,))
     x = chain.variables(state)
     errors = derivative_errors(
-        lambda x: chain.evaluate("wrench_model", x),
-        chain.differentiate("wrench_model", x),
+        lambda x: chain.evaluate(x, "wrench_model"),
+        chain.differentiate(x, "wrench_model"),
         x,
         STEP,
         _flat_blocks(),

@@ -19,6 +19,11 @@ from drake_haptics.systems.contact.contact_query import ContactObject, ContactQu
 from drake_haptics.systems.contact.penalty_force import PenaltyForce
 
 
+def read_outputs(diagram, context, names) -> np.ndarray:
+    """Returns outputs of a diagram, one after another."""
+    return np.concatenate([diagram.GetOutputPort(name).Eval(context) for name in names])
+
+
 class ContactChain:
     """The chain from poses and velocities to wrenches, around a state.
 
@@ -80,14 +85,14 @@ class ContactChain:
         """Returns pose and velocity (13) of each body that moves."""
         return np.hstack([state.q, state.V])[self._moving].ravel()
 
-    def evaluate(self, output: str, x: np.ndarray) -> np.ndarray:
-        """Returns an output at other variables, by the query that knows this state."""
+    def evaluate(self, x: np.ndarray, *outputs: str) -> np.ndarray:
+        """Returns outputs at other variables, by the query that knows this state."""
         context = self.context.Clone()
         self._fix(self.diagram, context, x)
-        return self.diagram.GetOutputPort(output).Eval(context)
+        return read_outputs(self.diagram, context, outputs)
 
-    def differentiate(self, output: str, x: np.ndarray) -> AutoDiffVector:
-        """Returns the output with its derivatives by the variables."""
+    def differentiate(self, x: np.ndarray, *outputs: str) -> AutoDiffVector:
+        """Returns the outputs with their derivatives by the variables."""
         context = self.context.Clone()
         self._fix(self.diagram, context, x)
         self.query.prepare_conversion(self.query.GetMyMutableContextFromRoot(context))
@@ -95,7 +100,7 @@ class ContactChain:
         of_twin = twin.CreateDefaultContext()
         of_twin.SetTimeStateAndParametersFrom(context)
         self._fix(twin, of_twin, InitializeAutoDiff(x).ravel())
-        answer = twin.GetOutputPort(output).Eval(of_twin)
+        answer = read_outputs(twin, of_twin, outputs)
         return AutoDiffVector(ExtractValue(answer).ravel(), ExtractGradient(answer))
 
     def _fix(self, system, context, x: np.ndarray) -> None:

@@ -121,16 +121,16 @@ def test_a_chain_with_other_parameters_has_their_force_in_both_scalars(states, r
         state = replace(state, V=np.zeros_like(state.V))
         chain = ContactChain(state, (True, True))
         x = chain.variables(state)
-        before = chain.evaluate("F_To_W", x)
+        before = chain.evaluate(x, "F_To_W")
         write(chain, "penalty_force", gains)
         write(chain, "contact_clustering", rule)
         write(chain, "contact_query", rule.tolerance_m)
         F = calc_elastic_force(state, gains, rule)
-        found = chain.evaluate("F_To_W", x)
+        found = chain.evaluate(x, "F_To_W")
         np.testing.assert_allclose(found[3:], F, atol=1e-9)
         assert not np.allclose(found, before)
         np.testing.assert_allclose(
-            chain.differentiate("F_To_W", x).value, found, atol=1e-9
+            chain.differentiate(x, "F_To_W").value, found, atol=1e-9
         )
 
 
