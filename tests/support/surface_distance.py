@@ -35,13 +35,20 @@ def distances(points, V, F):
     area = np.linalg.norm(normals, axis=1)
     normals /= np.where(area > 0, area, 1)[:, None]
     inward = np.cross(normals[:, None], steps)
+    lengths = np.where(lengths > 0, lengths, 1)
+    middles = corners.mean(axis=1)
+    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
     result = []
     for p in points:
-        to_point = p - corners
-        along = (to_point * steps).sum(axis=2) / np.where(lengths > 0, lengths, 1)
-        beside = to_point - np.clip(along, 0, 1)[:, :, None] * steps
+        # A triangle is no farther than its middle, and no nearer by its radius.
+        away = np.linalg.norm(middles - p, axis=1)
+        near = np.flatnonzero(away - radii <= away.min() * (1 + 1e-9))
+        to_point = p - corners[near]
+        along = (to_point * steps[near]).sum(axis=2) / lengths[near]
+        beside = to_point - np.clip(along, 0, 1)[:, :, None] * steps[near]
         to_edges = np.linalg.norm(beside, axis=2).min(axis=1)
-        is_above = ((inward * to_point).sum(axis=2) >= 0).all(axis=1) & (area > 0)
-        height = np.abs((normals * to_point[:, 0]).sum(axis=1))
+        inside = ((inward[near] * to_point).sum(axis=2) >= 0).all(axis=1)
+        is_above = inside & (area[near] > 0)
+        height = np.abs((normals[near] * to_point[:, 0]).sum(axis=1))
         result.append(min(to_edges.min(), height[is_above].min(initial=np.inf)))
     return np.array(result)
