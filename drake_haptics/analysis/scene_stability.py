@@ -257,8 +257,8 @@ def _find_limits(
         kinds.append("translation")
     if coupling.rotational_stiffness_Nm_per_rad > 0.0:
         kinds.append("rotation")
-    cases: tuple[Against, ...] = ("this contact", "a rigid wall")
-    cases = cases if touches else cases[1:]
+    cases: list[Against] = ["this contact"] if touches else []
+    cases.append("a rigid wall")
     return tuple(
         find_stiffness_limits(
             held, kind, against, partial(report, f"limit of {kind} against {against}")
