@@ -129,8 +129,9 @@ class SceneStability:
                 gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
             )
             rows, columns = self.map.spectral_radius.shape
+            here = "in this contact" if self.num_contacts else "in free space"
             axes.set_title(
-                f"couplings stable in this contact, of {columns} × {rows};"
+                f"couplings stable {here}, of {columns} × {rows};"
                 " dashed: against a rigid wall"
             )
             axes.set_xlabel("stiffness K, N/m")

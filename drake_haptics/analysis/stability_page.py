@@ -73,10 +73,11 @@ def _describe_nearest_limit(stability: SceneStability) -> str:
     nearest = min(limits, key=lambda limit: limit.gain_margin, default=None)
     if nearest is None or math.isinf(nearest.gain_margin):
         return f"Stable {held}."
+    here = "in this contact" if stability.num_contacts else "in free space"
     where = (
         f"Stable {held}."
         if nearest.gain_margin >= 1.0
-        else f"Stable in this contact {held}, but not against {nearest.against}."
+        else f"Stable {here} {held}, but not against {nearest.against}."
     )
     if nearest.gain_margin == 0.0:
         # Another gain is too large there: its limit is the one to know.

@@ -132,6 +132,8 @@ def test_it_draws_four_panels_with_a_map_and_three_without(found, figure):
     assert len(panels) == 4
     assert any("stable in this contact, of 3 × 3" in title for title in panels)
     assert len(replace(found, map=None).plot().axes) == 3
+    (title, *_) = replace(found, num_contacts=0).plot().axes
+    assert "stable in free space, of 3 × 3" in title.get_title()
 
 
 def read_meanings(figure):

@@ -88,6 +88,11 @@ def test_a_limit_below_the_scenes_stiffness_is_a_warning(sample):
     assert "the scene has 800 N/m, a margin of 0.5." in words
 
 
+def test_a_tool_that_touches_nothing_is_stable_in_free_space(sample):
+    apart = replace(sample, num_contacts=0, limits=(make_limits(400.0),))
+    assert describe_verdict(apart).startswith("Stable in free space in a firm grip")
+
+
 def test_the_limit_is_of_the_gain_that_is_too_large(sample):
     # At 800 N/m no rotational stiffness is stable there, however low it is.
     none = replace(make_limits(0.0), kind="rotation", stiffness=1.0)
