@@ -26,7 +26,7 @@ from drake_haptics.cli.options import (
     write_call,
     write_json,
 )
-from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.evaluation.accuracy import budget, report
 from drake_haptics.evaluation.accuracy.costs import measure_p99
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
@@ -166,7 +166,7 @@ def accuracy(
         )
 
     try:
-        with progress_bar() as show:
+        with progress_bar() as show, naming(name, SceneError):
             if budget_us is None:
                 check_page_path(page)
                 study = measure(show, asked)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from drake_haptics.cli.command_help import CommandWithExamples
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console
+from drake_haptics.cli.endings import naming
 from drake_haptics.cli.live_line import ChangeLog
 from drake_haptics.cli.options import (
     FiniteRange,
@@ -22,6 +25,7 @@ from drake_haptics.cli.status_line import (
     describe_gate,
     make_driver_summary,
 )
+from drake_haptics.common.errors import SceneError
 from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.loop.drivers import make_simulated_driver
 from drake_haptics.scene.validation import RATES_HZ
@@ -88,13 +92,11 @@ def device(
     force.
     """
     console = make_console(stderr=json_file == "-")
-    driver = make_simulated_driver(
-        load_set_scene(scene, settings),
-        rate_hz=rate,
-        max_ttl_s=1e-3 * ttl_ms,
-        bind=bind,
-        port=port,
-    )
+    chosen = load_set_scene(scene, settings)
+    with naming(Path(scene).stem, SceneError):
+        driver = make_simulated_driver(
+            chosen, rate_hz=rate, max_ttl_s=1e-3 * ttl_ms, bind=bind, port=port
+        )
     console.print("The device waits. In another terminal:")
     console.print(
         f"  {write_call('run', scene, settings)} --device {driver.url}",

@@ -273,7 +273,10 @@ def test_numbers_that_are_none_are_a_wrong_call(number):
     assert result.exit_code == 2 and "--duration" in result.stderr
 
 
-@pytest.mark.parametrize("command", [["run", "--headless"], ["stability"]])
+@pytest.mark.parametrize(
+    "command",
+    [["run", "--headless"], ["stability"], ["device"], ["accuracy", "--quick"]],
+)
 def test_a_scene_that_cannot_be_built_is_named(command, folder):
     (folder / "far.yaml").write_text(SCENE.replace("}]}}", ", rpy_deg: [0, 0, 0]},"
         " {time_s: 1, position_m: [9, 0, 0]}]}}"))  # fmt: skip
