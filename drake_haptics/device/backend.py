@@ -6,6 +6,7 @@ B of the device's base: a device does not know its pose in the world.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from enum import IntEnum
@@ -64,6 +65,8 @@ class DeviceReading:
         buttons: Bit i is set while button i is held.
         gate: Whether the device shows force.
         fault: Reason of the fault, or `Fault.NONE`.
+        max_force_N: Largest force that the device ever shows, N; infinite if unknown.
+        max_torque_Nm: Largest torque, N·m.
     """
 
     sequence: int
@@ -74,6 +77,8 @@ class DeviceReading:
     buttons: int = 0
     gate: GateState = GateState.ACTIVE
     fault: Fault = Fault.NONE
+    max_force_N: float = math.inf
+    max_torque_Nm: float = math.inf
 
     __repr__ = one_line
 

@@ -32,6 +32,8 @@ class LocalGate:
         self._gate = _core.DeviceGate(
             max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=ttl_s
         )
+        self.max_force_N = max_force_N
+        self.max_torque_Nm = max_torque_Nm
         self._ttl_us = round(1e6 * ttl_s)
         self._session = secrets.randbelow(_UINT32) + 1
         self._sequence = 0

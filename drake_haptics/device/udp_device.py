@@ -168,4 +168,6 @@ def _to_reading(state: HandleState, gate: GateState, fault: Fault) -> DeviceRead
         buttons=state.buttons,
         gate=gate,
         fault=fault,
+        max_force_N=state.max_force_N,
+        max_torque_Nm=state.max_torque_Nm,
     )

@@ -18,10 +18,13 @@ from drake_haptics.device.backend import (
 from drake_haptics.loop.simulated_device import find_base, make_hand_path
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.validation import warn_caller
 from drake_haptics.systems.device.device_io import DeviceIo
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 _LOOK_AGAIN_S = 0.01
+# Drivers report their limits in single precision.
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -148,9 +151,14 @@ def make_device_port(
         DeviceError: The backend gives no usable reading.
         ValueError: The period or a limit is out of range, or the backend's reading is
             not a pose and velocity.
+
+    Warns:
+        SceneWarning: The device says that it shows less than a limit.
     """
     X_WB = X_WB or RigidTransform()
     reading = wait_for_reading(backend)
+    _warn_of_less("max_force_N", max_force_N, reading.max_force_N, "N")
+    _warn_of_less("max_torque_Nm", max_torque_Nm, reading.max_torque_Nm, "N·m")
     # Ends the servo of an earlier loop with this device.
     backend.end_contact_servo()
     io = DeviceIo(backend, X_WB, period_s, reading)
@@ -159,3 +167,13 @@ def make_device_port(
         io, period_s=period_s, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
     )
     return device, X_WB @ vector_to_pose(reading.X_BH)
+
+
+def _warn_of_less(key: str, asked: float, shown: float, unit: str) -> None:
+    """Warns if a device shows less than a limit, which the loop would not notice."""
+    if shown < (1.0 - _ROUNDING) * asked:
+        warn_caller(
+            f"the device says that it shows at most {shown:.4g} {unit}, less than the"
+            f" {asked:g} {unit} of {key}: set device.{key} (make_device_port: {key}) to"
+            f" {shown:.4g}, so that passivity control and figures count what is shown"
+        )

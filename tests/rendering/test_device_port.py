@@ -1,5 +1,7 @@
 """A user's device in a user's plant."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fake_device import ScriptedDevice, make_reading
@@ -10,8 +12,11 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from drake_haptics import make_device_port
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters
+from drake_haptics.scene.validation import SceneWarning
 
-LIMITS = {"period_s": 1e-3, "max_force_N": 5.0, "max_torque_Nm": 0.2}
+# 0.7 is more than its neighbor in single precision.
+SENT = {"max_force_N": 5.0, "max_torque_Nm": 0.7}
+LIMITS = {"period_s": 1e-3, **SENT}
 # The base stands turned in the world.
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.5, 1.0), [0.1, 0.2, 0.3])
 CUBE = Box(0.02, 0.02, 0.02)
@@ -57,6 +62,27 @@ def test_a_limit_that_cannot_be_is_refused():
         make_device_port(hold_at(0.05), **LIMITS | {"max_force_N": -1.0})
     with pytest.raises(ValueError, match="period_s"):
         make_device_port(hold_at(0.05), **LIMITS | {"period_s": 0.0})
+
+
+@pytest.mark.parametrize(
+    "less, sentence",
+    [
+        ({"max_force_N": 3.0}, "at most 3 N, less than the 5 N of max_force_N"),
+        ({"max_torque_Nm": 0.0}, "at most 0 N·m, less than the 0.7 N·m of max_torque"),
+    ],
+)
+def test_a_device_that_shows_less_is_told_of(less, sentence):
+    """The loop would count force as shown that no hand feels."""
+    reading = replace(hold_at(0.05).read(), **less)
+    with pytest.warns(SceneWarning, match=sentence):
+        make_device_port(ScriptedDevice(lambda call: reading), **LIMITS)
+
+
+def test_limits_of_single_precision_are_the_same(recwarn):
+    as_sent = {key: float(np.float32(LIMITS[key])) for key in SENT}
+    reading = replace(hold_at(0.05).read(), **as_sent)
+    make_device_port(ScriptedDevice(lambda call: reading), **LIMITS)
+    assert not recwarn.list
 
 
 @pytest.mark.parametrize("period_s", [None, 5e-4])

@@ -269,6 +269,8 @@ class HaplyExchange:
             buttons=state.buttons,
             gate=self._gate.state,
             fault=self._gate.fault,
+            max_force_N=self._gate.max_force_N,
+            max_torque_Nm=self._gate.max_torque_Nm,
         )
         self._named = state.device_id
         return self._format(F_Ho_B)

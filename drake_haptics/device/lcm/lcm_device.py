@@ -342,6 +342,8 @@ class LcmDevice(DeviceBackend):
             buttons=to_uint32(status.buttons),
             gate=gate,
             fault=fault,
+            max_force_N=status.max_force,
+            max_torque_Nm=status.max_torque,
         )
 
 
