@@ -47,4 +47,5 @@ from .tool.handle_model import HandleModel as HandleModel
 from .tool.haptic_tool import HapticTool as HapticTool
 from .tool.passivity_control import PassivityControl as PassivityControl
 from .tool.tool_gravity import ToolGravity as ToolGravity
+from .tool.virtual_coupling import CouplingGains as CouplingGains
 from .tool.virtual_coupling import VirtualCoupling as VirtualCoupling

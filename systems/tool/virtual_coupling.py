@@ -50,7 +50,7 @@ class VirtualCoupling(Diagram):
     * `motions_and_gains` (39) holds all that both depend on: the inputs, in this order,
       the gains, and the pose X_HT at which the spring rests.
 
-    The gains (6), in the order of `drake_haptics._core.CouplingGains`, and X_HT (7) are
+    The gains (6), in the order of the constructor of `CouplingGains`, and X_HT (7) are
     a numeric parameter (13) of the Context; see `set_gains`. Outputs have no
     derivatives with respect to them.
     """

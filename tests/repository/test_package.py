@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import pkgutil
 import subprocess
 import sys
@@ -72,6 +73,17 @@ def test_the_names_are_told_to_type_checkers_from_where_they_come(name: str) -> 
         assert where in ("", "drake_haptics._core") or where.startswith(
             package.__name__
         )
+
+
+def test_what_the_parameters_of_a_system_are_set_to_is_public_too() -> None:
+    types = {
+        list(method.__annotations__.values())[1]
+        for name in drake_haptics.systems.__all__
+        for word, method in inspect.getmembers(getattr(drake_haptics.systems, name))
+        if word.startswith("set_") and inspect.isfunction(method)
+    }
+    assert {"float", "CouplingGains"} < types
+    assert types - {"float"} <= set(drake_haptics.systems.__all__)
 
 
 def test_a_function_is_offered_also_once_the_module_of_its_name_is_loaded() -> None:
