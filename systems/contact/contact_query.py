@@ -46,7 +46,8 @@ class ContactObject:
 
     Attributes:
         name: Name, unique among the objects; part of port names.
-        decomposition: Convex pieces of the object, in its frame O.
+        decomposition: Convex pieces of the object, in its frame O: the `core` of a
+            `drake_haptics.Decomposition`.
         X_WO: Pose of the object in the world, if it never moves; None for an object
             whose pose comes from input ports.
     """
@@ -127,7 +128,7 @@ class ContactQuery(DifferentiableSystem):
         """Constructs the system.
 
         Args:
-            tool: Convex pieces of the tool, in its frame.
+            tool: Convex pieces of the tool, in its frame, as those of an object.
             objects: Objects that the tool can meet, in the order of
                 `ContactSet.object_index`.
             tolerance_m: Default distance up to which pairs are contacts, m.
