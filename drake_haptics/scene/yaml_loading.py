@@ -124,7 +124,10 @@ def _check_mapping(schema: Any, data: Any, where: str) -> None:
     for key, item in data.items():
         place = join_key(where, str(key))
         if key not in types:
-            raise SceneError(f"{place}: unknown key; {make_hint(str(key), types)}")
+            hint = make_hint(str(key), types)
+            if ":" in str(key):  # to YAML, {scale:2} is one key without a value
+                hint = "YAML wants a space after the colon"
+            raise SceneError(f"{place}: unknown key; {hint}")
         check_keys(types[key], item, place)
 
 

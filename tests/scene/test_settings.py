@@ -92,6 +92,7 @@ def test_files_are_found_from_the_current_folder(scene, tmp_path, monkeypatch):
         ("=3", "not a key"),
         ("a..b=3", "not a key"),
         ("contact=3", "expected keys"),
+        ("effects.friction={coefficient:0.2}", "YAML wants a space after the colon"),
     ],
 )
 def test_what_cannot_be_set_is_named(scene, setting, words):
