@@ -25,7 +25,10 @@ from drake_haptics.geometry.mesh.units import guess_unit
 LARGEST_USUAL_EXTENT_M = 10.0
 SMALLEST_USUAL_EXTENT_M = 1e-3
 # Programs that close holes; trimesh only closes triangles and quadrilaterals.
-_HOLES = "MeshLab (Close Holes) or Blender (Fill Holes)"
+_HOLES = (
+    "MeshLab (Merge Close Vertices, Close Holes) or Blender (Merge by Distance, Fill"
+    " Holes)"
+)
 _SMALL_HOLES = (
     'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
     ' m.export("new.stl")'
@@ -60,6 +63,8 @@ def check_holes(
     if not num_open:
         return
     rims = _measure_rims(edges, is_open)
+    # Where each triangle is alone, corners that differ by round-off are to be joined.
+    is_small = max(rims) <= 4 and len(rims) < len(triangles)
     open_parts = len(
         np.unique(component[is_open[edges.of_halfedge.reshape(-1, 3)].any(axis=1)])
     )
@@ -71,7 +76,7 @@ def check_holes(
         f"{count(len(rims), 'rim')} of holes or sheets in "
         f"{count(open_parts, 'part')}",
         "left open; these parts bound no solid, their pieces are one-sided. To "
-        f"close holes: {_SMALL_HOLES if max(rims) <= 4 else _HOLES}",
+        f"close holes: {_SMALL_HOLES if is_small else _HOLES}",
     )
 
 

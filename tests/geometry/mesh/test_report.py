@@ -87,6 +87,14 @@ def test_holes_come_with_what_closes_them(count, words):
     assert "1 rim of holes or sheets in 1 part" in finding.message
 
 
+def test_triangles_whose_corners_differ_by_round_off_come_with_what_joins_them():
+    V, F = box()
+    corners = V[F].reshape(-1, 3)
+    corners = corners + 1e-9 * np.arange(corners.size).reshape(-1, 3)
+    mesh = Mesh.from_arrays(corners, np.arange(len(corners)).reshape(-1, 3))
+    assert "Merge Close Vertices" in mesh.report.findings[0].action
+
+
 @pytest.mark.parametrize(
     ("meters", "text"),
     [(0, "0 m"), (1.5, "1.5 m"), (0.25, "250 mm"), (2e-3, "2 mm"), (5e-5, "50 µm")],
