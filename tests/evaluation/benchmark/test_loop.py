@@ -174,6 +174,7 @@ def test_figures_are_those_of_the_ticks_that_all_touch_in(
             continue
         course = courses[f.loop]
         assert f.deepest_m == -course.nearest_m.min()
+        assert math.copysign(1.0, f.deepest_m) == 1.0  # it prints no -0.00 mm
         assert f.median_contacts == np.median(course.num_contacts[1:][touching])
         assert f.loop != OURS or f.apart_m == 0.0
 
@@ -260,7 +261,7 @@ def test_tables_of_a_scene_that_the_page_lacks_come_after_all_others() -> None:
 def test_our_loop_does_again_what_the_page_tells() -> None:
     """Its contacts, depth and largest force, over the whole motion that was timed."""
     course = NativeLoop(make_problem(duration_s=Effort().loop_s)).observe()
-    most, deepest_m = course.num_contacts[1:].max(), -course.nearest_m.min()
+    most, deepest_m = course.num_contacts[1:].max(), 0.0 - course.nearest_m.min()
     median = np.median(course.num_contacts[course.num_contacts > 0])
     head, *rows = rows_below(loop_tables(SOME)[1].title)
     found = [row for row in rows if {OURS, NATIVE} & {*names_of(row)}]

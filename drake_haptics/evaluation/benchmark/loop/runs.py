@@ -133,7 +133,7 @@ def _make_figures(
         *times,
         median_contacts=float(np.median(count[touching])) if touching.any() else 0.0,
         max_contacts=int(count.max()),
-        deepest_m=float(-course.nearest_m.min(initial=0.0)),
+        deepest_m=max(0.0, -float(course.nearest_m.min())),
         force_N=float(np.median(force_N[touching])) if touching.any() else 0.0,
         max_force_N=float(force_N.max()),
         apart_m=float(np.median(apart_m)),
