@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -93,49 +93,44 @@ def make_hammer() -> Surface:
     turn = 2 * np.pi / _SECTORS * _OPENING / 2
     c, s = np.cos(turn), np.sin(turn)
     clockwise = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    rings = [builder.add_ring(circle(r, z, _SECTORS) @ clockwise) for r, z in _HEAD]
-    builder.add_fan(rings[0], builder.add_vertex((0, 0, 0)), at_start=True)
     open_rows = range(_OPENING_ROW, _OPENING_ROW + _OPENING)
-    for row, (near, far) in enumerate(pairwise(rings)):
-        builder.add_band(near, far, holes=range(_OPENING) if row in open_rows else ())
+    rings = builder.add_tube(
+        (circle(r, z, _SECTORS) @ clockwise for r, z in _HEAD),
+        start=(0, 0, 0),
+        holes=lambda row: range(_OPENING) if row in open_rows else (),
+    )
     _add_handle(builder, rings)
     _add_claw(builder, rings[-1])
     return builder.build()
 
 
-def _add_handle(builder: SurfaceBuilder, rings: list[list[int]]) -> None:
+def _add_handle(builder: SurfaceBuilder, rings: list[Sequence[int]]) -> None:
     """Lofts the handle from the rim of the opening, which is a loop of 16."""
     rows = rings[_OPENING_ROW : _OPENING_ROW + _OPENING + 1]
-    near = opening_loop(rows, range(_OPENING + 1))
+    rim = opening_loop(rows, range(_OPENING + 1))
     middle = (_HEAD[_OPENING_ROW][1] + _HEAD[_OPENING_ROW + _OPENING][1]) / 2
-    angle = np.pi * (-0.75 + 2 * np.arange(len(near)) / len(near))
-    for x, half_width, half_height in _HANDLE:
-        section = [
-            np.full(len(near), x),
-            half_width * np.cos(angle),
-            middle + half_height * np.sin(angle),
-        ]
-        far = builder.add_ring(np.column_stack(section))
-        builder.add_band(near, far)
-        near = far
-    end = builder.add_vertex((_HANDLE[-1][0] + 0.0015, 0, middle))
-    builder.add_fan(near, end, at_start=False)
+    angle = np.pi * (-0.75 + 2 * np.arange(len(rim)) / len(rim))
+    sections = (
+        np.column_stack(
+            [np.full(len(rim), x), y * np.cos(angle), middle + z * np.sin(angle)]
+        )
+        for x, y, z in _HANDLE
+    )
+    builder.add_tube(sections, rim=rim, end=(_HANDLE[-1][0] + 0.0015, 0, middle))
 
 
-def _add_claw(builder: SurfaceBuilder, root: list[int]) -> None:
+def _add_claw(builder: SurfaceBuilder, root: Sequence[int]) -> None:
     """Adds the tines; each starts at one half of `root` and the chord across it."""
     front = _OPENING // 2
     back = front + _SECTORS // 2
     halves = {+1: root[front : back + 1], -1: [*root[back:], *root[: front + 1]]}
-    for side, near in halves.items():
-        for k in range(1, _TINE_SECTIONS + 1):
-            far = builder.add_ring(_tine_section(side, k / _TINE_SECTIONS))
-            builder.add_band(near, far)
-            near = far
+    shares = np.arange(1, _TINE_SECTIONS + 1) / _TINE_SECTIONS
+    for side, rim in halves.items():
+        sections = [_tine_section(side, s) for s in shares]
         # Half way between the flat side's middle and the round side's.
-        end = _tine_section(side, 1.0)
+        end = sections[-1]
         center = (end[0] + end[-1]) / 4 + end[_SECTORS // 4] / 2
-        builder.add_fan(near, builder.add_vertex(center), at_start=False)
+        builder.add_tube(sections, rim=rim, end=center)
 
 
 def _tine_section(side: int, s: float) -> np.ndarray:
@@ -165,21 +160,14 @@ def make_wrench() -> Surface:
     0.42 m long, for nuts of 33 mm across flats.
     """
     builder = SurfaceBuilder()
-    rings = [builder.add_ring(_wrench_section(*station)) for station in _WRENCH_HANDLE]
-    start = builder.add_vertex((_WRENCH_HANDLE[0][0], 0, 0))
-    builder.add_fan(rings[0], start, at_start=True)
-    for near, far in pairwise(rings):
-        builder.add_band(near, far)
+    sections = (_wrench_section(*station) for station in _WRENCH_HANDLE)
+    *_, root = builder.add_tube(sections, start=(_WRENCH_HANDLE[0][0], 0, 0))
     # The handle's last ring divides into halves that share the chord across it.
-    root, middle = rings[-1], len(rings[-1]) // 2
-    for side, near in ((1, root[: middle + 1]), (-1, [*root[middle:], root[0]])):
-        for x, inner, outer in _JAW:
-            far = builder.add_ring(_jaw_section(side, x, inner, outer))
-            builder.add_band(near, far)
-            near = far
-        x, inner, outer = _JAW[-1]
-        end = builder.add_vertex((x, side * (inner + outer) / 2, 0))
-        builder.add_fan(near, end, at_start=False)
+    middle = len(root) // 2
+    x, inner, outer = _JAW[-1]
+    for side, rim in ((1, root[: middle + 1]), (-1, [*root[middle:], root[0]])):
+        jaw = (_jaw_section(side, *station) for station in _JAW)
+        builder.add_tube(jaw, rim=rim, end=(x, side * (inner + outer) / 2, 0))
     return builder.build()
 
 

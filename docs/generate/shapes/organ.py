@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from itertools import pairwise
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -43,16 +42,12 @@ def make_organ() -> Surface:
     """
     builder = SurfaceBuilder()
     path = rounded_path(np.array(_COLON), 0.045, bend_steps=14, step=0.0048)
-    rings = _add_rings(
-        builder, path, np.array([1.0, 0.0, 0.0]), _COLON_SECTORS, _colon_radius
+    rings = builder.add_tube(
+        _make_sections(path, np.array([1.0, 0.0, 0.0]), _COLON_SECTORS, _colon_radius),
+        start=_bend(path.points[0]),
+        end=_bend(path.points[-1]),
+        holes=_holes,
     )
-    start = builder.add_vertex(_bend(path.points[0]))
-    builder.add_fan(rings[0], start, at_start=True)
-    for row, (near, far) in enumerate(pairwise(rings)):
-        builder.add_band(near, far, holes=_holes(row))
-    end = builder.add_vertex(_bend(path.points[-1]))
-    builder.add_fan(rings[-1], end, at_start=False)
-
     bowel = rounded_path(_bowel_corners(), 0.0135, bend_steps=4, step=0.0063)
     rim = _rim(rings, _BOWEL_ROWS, _BOWEL_COLUMNS)
     _add_branch(builder, rim, bowel, np.array([0.0, -1.0, -1.0]), _bowel_radius)
@@ -107,24 +102,21 @@ def _bend(points: np.ndarray) -> np.ndarray:
     return np.stack(bent, axis=-1)
 
 
-def _add_rings(
-    builder: SurfaceBuilder,
+def _make_sections(
     path: SmoothPath,
     normal: np.ndarray,
     count: int,
     radius: Callable[[float, float, np.ndarray], np.ndarray],
-) -> list[list[int]]:
-    """Adds rings of `count` vertices around a path, but for its ends."""
+) -> Iterator[np.ndarray]:
+    """Yields rings of `count` points around a path, but for its ends."""
     steps = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     angle = 2 * np.pi * np.arange(count) / count
-    rings = []
     frames = path.frames(normal)
     for s, p, frame in list(zip(along, path.points, frames, strict=True))[1:-1]:
         r = radius(float(s), float(along[-1]), angle)
         section = np.column_stack([r * np.cos(angle), r * np.sin(angle)])
-        rings.append(builder.add_ring(_bend(p + section @ frame[:, :2].T)))
-    return rings
+        yield _bend(p + section @ frame[:, :2].T)
 
 
 def _add_branch(
@@ -143,14 +135,11 @@ def _add_branch(
         normal: (3,) direction in which the rim begins, seen from the axis.
         radius: Function that returns radii of the tube, m, as `_bowel_radius` does.
     """
-    for ring in _add_rings(builder, path, normal, len(rim), radius):
-        builder.add_band(rim, ring)
-        rim = ring
-    end = builder.add_vertex(_bend(path.points[-1]))
-    builder.add_fan(rim, end, at_start=False)
+    sections = _make_sections(path, normal, len(rim), radius)
+    builder.add_tube(sections, rim=rim, end=_bend(path.points[-1]))
 
 
-def _rim(rings: list[list[int]], rows: range, columns: range) -> list[int]:
+def _rim(rings: list[Sequence[int]], rows: range, columns: range) -> list[int]:
     """Returns the rim of an opening of the colon."""
     around = [column % _COLON_SECTORS for column in columns]
     return opening_loop([rings[row] for row in rows], around)

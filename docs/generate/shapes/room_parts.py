@@ -146,14 +146,15 @@ def _add_hub(builder: SurfaceBuilder, radius: float) -> list[list[int]]:
     levels = [(0.9, -1.0), (1.0, -0.5), (1.0, 0.5), (0.9, 1.0)]
     angle = 2 * np.pi * (np.arange(count) - 0.5) / count
     x, y = np.cos(angle), np.sin(angle)
-    rings = [
-        builder.add_ring(radius * np.column_stack([r * x, r * y, np.full(count, z)]))
-        for r, z in levels
-    ]
-    builder.add_fan(rings[0], builder.add_vertex((0, 0, -radius)), at_start=True)
-    for row, (near, far) in enumerate(pairwise(rings)):
-        builder.add_band(near, far, holes=range(0, count, 2) if row == 1 else ())
-    builder.add_fan(rings[-1], builder.add_vertex((0, 0, radius)), at_start=False)
+    rings = builder.add_tube(
+        (
+            radius * np.column_stack([r * x, r * y, np.full(count, z)])
+            for r, z in levels
+        ),
+        start=(0, 0, -radius),
+        end=(0, 0, radius),
+        holes=lambda row: range(0, count, 2) if row == 1 else (),
+    )
     return [opening_loop(rings[1:3], [k, k + 1]) for k in range(0, count, 2)]
 
 
@@ -254,9 +255,8 @@ def make_clamp(radius: float) -> Surface:
     wall, half = 0.004 + 0.1 * radius, 0.012 + 0.1 * radius
     # Up the outside and down the inside; the last ring joins the first.
     corners = [(1, -half), (1, half), (0, half), (0, -half)]
-    rings = [builder.add_ring(circle(radius + wall * w, z, 24)) for w, z in corners]
-    for near, far in zip(rings, rings[1:] + rings[:1], strict=True):
-        builder.add_band(near, far)
+    rings = builder.add_tube(circle(radius + wall * w, z, 24) for w, z in corners)
+    builder.add_band(rings[-1], rings[0])
     return builder.build()
 
 
@@ -290,25 +290,15 @@ def _add_rail(
     angle = 2 * np.pi * np.arange(_RAIL_SECTORS) / _RAIL_SECTORS
     if side < 0:
         angle = angle + np.pi
-    rings = [
-        builder.add_ring(
-            np.column_stack(
-                [
-                    x + radius * np.cos(angle),
-                    radius * np.sin(angle),
-                    np.full(_RAIL_SECTORS, z),
-                ]
-            )
-        )
-        for z in levels
-    ]
-    builder.add_fan(rings[0], builder.add_vertex((x, 0, levels[0])), at_start=True)
+    across, along = x + radius * np.cos(angle), radius * np.sin(angle)
     columns = [_RAIL_SECTORS - 1, 0, 1]
-    loops = []
-    for row in range(len(rings) - 1):
-        is_open = row % 3 != 0
-        builder.add_band(rings[row], rings[row + 1], columns[:-1] if is_open else ())
-        if row % 3 == 1:
-            loops.append(opening_loop(rings[row : row + 3], columns))
-    builder.add_fan(rings[-1], builder.add_vertex((x, 0, levels[-1])), at_start=False)
-    return loops
+    rings = builder.add_tube(
+        (np.column_stack([across, along, np.full(len(angle), z)]) for z in levels),
+        start=(x, 0, levels[0]),
+        end=(x, 0, levels[-1]),
+        holes=lambda row: columns[:-1] if row % 3 else (),
+    )
+    return [
+        opening_loop(rings[row : row + 3], columns)
+        for row in range(1, len(rings) - 1, 3)
+    ]

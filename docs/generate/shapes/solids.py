@@ -1,6 +1,7 @@
 """Makes solids: block, cup, peg, pen, socket, sphere, spoon and torus."""
 
-from itertools import combinations, pairwise
+from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -105,12 +106,13 @@ def make_cup() -> Surface:
     builder = SurfaceBuilder()
     # The profile runs up the outside, over the rim and down the inside.
     profile = [*_OUTER, _RIM, *_INNER]
-    rings = [builder.add_ring(_sector_circle(r, z)) for r, z in profile]
-    builder.add_fan(rings[0], builder.add_vertex((0, 0, 0)), at_start=True)
     open_rows = {*range(*_LOWER_OPENING), *range(*_UPPER_OPENING)}
-    for row, (near, far) in enumerate(pairwise(rings)):
-        builder.add_band(near, far, holes={0} if row in open_rows else ())
-    builder.add_fan(rings[-1], builder.add_vertex((0, 0, _FLOOR_M)), at_start=False)
+    rings = builder.add_tube(
+        (_sector_circle(r, z) for r, z in profile),
+        start=(0, 0, 0),
+        end=(0, 0, _FLOOR_M),
+        holes=lambda row: {0} if row in open_rows else (),
+    )
     _add_handle(builder, rings)
     return builder.build()
 
@@ -124,17 +126,15 @@ def _sector_circle(radius: float, z: float) -> np.ndarray:
     )
 
 
-def _add_handle(builder: SurfaceBuilder, rings: list[list[int]]) -> None:
+def _add_handle(builder: SurfaceBuilder, rings: list[Sequence[int]]) -> None:
     """Sweeps a hexagonal section from the upper opening to the lower one."""
     low, middle, high = (rings[_UPPER_OPENING[0] + k] for k in range(3))
     near = [low[0], low[1], middle[1], high[1], high[0], middle[0]]
     # Along the way the section turns half round about y, so that its top ends below.
     low, middle, high = (rings[_LOWER_OPENING[0] + k] for k in range(3))
     last = [high[0], high[1], middle[1], low[1], low[0], middle[0]]
-    for k in range(1, _HANDLE_SECTIONS):
-        far = builder.add_ring(_handle_section(k / _HANDLE_SECTIONS))
-        builder.add_band(near, far)
-        near = far
+    shares = np.arange(1, _HANDLE_SECTIONS) / _HANDLE_SECTIONS
+    *_, near = builder.add_tube(map(_handle_section, shares), rim=near)
     builder.add_band(near, last)
 
 
@@ -303,15 +303,11 @@ def make_torus() -> Surface:
     builder = SurfaceBuilder()
     tube = 2 * np.pi * np.arange(_AROUND_TUBE) / _AROUND_TUBE
     reach = _RING_RADIUS_M + _TUBE_RADIUS_M * np.cos(tube)
-    rings = []
-    for angle in 2 * np.pi * np.arange(_AROUND_RING) / _AROUND_RING:
-        # Counterclockwise about the direction of advance, which is +y at angle 0.
-        section = [
-            reach * np.cos(angle),
-            reach * np.sin(angle),
-            -_TUBE_RADIUS_M * np.sin(tube),
-        ]
-        rings.append(builder.add_ring(np.column_stack(section)))
-    for near, far in zip(rings, rings[1:] + rings[:1], strict=True):
-        builder.add_band(near, far)
+    z = -_TUBE_RADIUS_M * np.sin(tube)
+    # Counterclockwise about the direction of advance, which is +y at angle 0.
+    rings = builder.add_tube(
+        np.column_stack([reach * np.cos(angle), reach * np.sin(angle), z])
+        for angle in 2 * np.pi * np.arange(_AROUND_RING) / _AROUND_RING
+    )
+    builder.add_band(rings[-1], rings[0])
     return builder.build()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -99,6 +99,35 @@ class SurfaceBuilder:
             b = ring[(i + 1) % len(ring)]
             self._triangles.append((b, a, apex) if at_start else (a, b, apex))
 
+    def add_tube(
+        self,
+        sections: Iterable[np.ndarray],
+        *,
+        rim: Sequence[int] | None = None,
+        start: Iterable[float] | None = None,
+        end: Iterable[float] | None = None,
+        holes: Callable[[int], Collection[int]] = lambda row: (),
+    ) -> list[Sequence[int]]:
+        """Adds rings with bands between them and returns the rings.
+
+        Args:
+            sections: (n, 3) points of each ring, m.
+            rim: A ring of the surface that the tube goes on from, row 0.
+            start: (3,) point where the tube begins, m. Defaults to an open beginning.
+            end: (3,) point where it ends, m. Defaults to an open end.
+            holes: Function that returns the columns that the band after a row leaves
+                open.
+        """
+        rings = [] if rim is None else [rim]
+        rings += map(self.add_ring, sections)
+        if start is not None:
+            self.add_fan(rings[0], self.add_vertex(start), at_start=True)
+        for row, (near, far) in enumerate(pairwise(rings)):
+            self.add_band(near, far, holes(row))
+        if end is not None:
+            self.add_fan(rings[-1], self.add_vertex(end), at_start=False)
+        return rings
+
     def build(self) -> Surface:
         """Returns the surface made so far, without vertices that no triangle uses."""
         used, triangles = np.unique(self._triangles, return_inverse=True)
@@ -141,11 +170,7 @@ def loft(
         end: (3,) the point where it ends, m.
     """
     builder = SurfaceBuilder()
-    rings = [builder.add_ring(section) for section in sections]
-    builder.add_fan(rings[0], builder.add_vertex(start), at_start=True)
-    for near, far in pairwise(rings):
-        builder.add_band(near, far)
-    builder.add_fan(rings[-1], builder.add_vertex(end), at_start=False)
+    builder.add_tube(sections, start=start, end=end)
     return builder.build()
 
 

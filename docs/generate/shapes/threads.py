@@ -57,13 +57,12 @@ def make_nut() -> Surface:
     builder.add_band(low, high)
     # The last section begins at the angle to which the thread has turned.
     turned = _NUT_SECTIONS % _SIDES
-    near = [*high[turned:], *high[:turned]]
-    for k in reversed(range(_NUT_SECTIONS + 1)):
-        has_tooth = k in _TEETH or k - 1 in _TEETH
-        far = builder.add_ring(_make_section(tooth if has_tooth else bore, 0.0, k))
-        builder.add_band(near, far)
-        near = far
-    builder.add_band(near, low)
+    sections = (
+        _make_section(tooth if k in _TEETH or k - 1 in _TEETH else bore, 0.0, k)
+        for k in reversed(range(_NUT_SECTIONS + 1))
+    )
+    rings = builder.add_tube(sections, rim=[*high[turned:], *high[:turned]])
+    builder.add_band(rings[-1], low)
     return builder.build()
 
 
