@@ -2,82 +2,37 @@
 
 python tests/benchmarks/instructions.py [KIND ...]
 
-Needs valgrind. Each figure is the difference between a run of the trajectory and one
-of it 301 times, so that starting Python cancels, less that of two single points, so
-that checking the poses and reading the clock do. Each press is cut at first and last
+Needs valgrind. The count is that of `count_depths`, as on the page on the paper, over
+so many repeats that switching it on does not show. Each press is cut at first and last
 touch: apart and in depth are counted by themselves, warm.
 """
 
 from __future__ import annotations
 
-import os
-import re
-import shutil
-import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
 from drake_haptics import ConvexPair, ConvexPolytope
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.benchmark.pairs import (
     KINDS,
     SIZES,
-    PairShape,
     make_pair,
     make_presses,
 )
+from drake_haptics.evaluation.measuring.valgrind import require_valgrind
+from drake_haptics.evaluation.paper.depth_cost import count_depths
 
-_MORE = 300
-_CHILD = """
-import sys
-import numpy as np
-from drake_haptics import ConvexPair, ConvexPolytope
-data = np.load(sys.argv[1])
-pair = ConvexPair(ConvexPolytope(data["A"]), ConvexPolytope(data["B"]))
-for _ in range(int(sys.argv[2])):
-    pair.query_trajectory(data["X_WA"], np.eye(4))
-"""
-
-
-def count(pair: PairShape, X_WA: np.ndarray) -> float:
-    """Returns instructions per query, going there and back so that it stays warm."""
-    point = np.zeros((1, 3))
-    return _per_pose(pair.A_vertices, pair.B_vertices, X_WA) - _per_pose(
-        point, point, X_WA
-    )
-
-
-def _per_pose(A: np.ndarray, B: np.ndarray, X_WA: np.ndarray) -> float:
-    there_and_back = np.concatenate([X_WA, X_WA[::-1]])
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "poses.npz"
-        np.savez(file, A=A, B=B, X_WA=there_and_back)
-        few, many = (_instructions(file, passes) for passes in (1, 1 + _MORE))
-    return (many - few) / (_MORE * len(there_and_back))
-
-
-def _instructions(file: Path, passes: int) -> int:
-    command = [
-        *("valgrind", "--tool=cachegrind", "--cache-sim=no"),
-        *("--cachegrind-out-file=/dev/null", sys.executable, "-c", _CHILD),
-        *(str(file), str(passes)),
-    ]
-    environment = {**os.environ, "PYTHONHASHSEED": "0"}
-    done = subprocess.run(
-        command, capture_output=True, text=True, check=True, env=environment
-    )
-    found = re.search(r"I\s+refs:\s+([\d,]+)", done.stderr)
-    if found is None:
-        raise RuntimeError(f"valgrind counted nothing:\n{done.stderr}")
-    return int(found[1].replace(",", ""))
+_REPEATS = 25
 
 
 def main() -> None:
     """Prints a table of the kinds named on the command line, or of all."""
-    if shutil.which("valgrind") is None:
-        sys.exit("valgrind is not installed")
+    try:
+        require_valgrind()
+    except HapticsError as error:
+        sys.exit(str(error))
     print("| pair, vertices | apart | in depth |\n| --- | --: | --: |")
     for kind in sys.argv[1:] or KINDS:
         for size in SIZES:
@@ -87,9 +42,14 @@ def main() -> None:
             deep = ConvexPair(*bodies).query_trajectory(X_WA, np.eye(4)).distance < 0
             first = int(deep.argmax())
             last = first + int(deep[first:].sum())
-            apart = count(pair, X_WA[:first])
-            in_depth = count(pair, X_WA[first:last])
-            print(f"| {kind}, {size} | {apart:.0f} | {in_depth:.0f} |", flush=True)
+            cells = [f"{kind}, {size}"]
+            for poses in (X_WA[:first], X_WA[first:last]):
+                # There and back, so that it stays warm.
+                motion = np.tile(np.concatenate([poses, poses[::-1]]), (_REPEATS, 1, 1))
+                counts = count_depths({size: (pair, motion)})
+                assert counts is not None
+                cells.append(f"{counts[size]:.0f}")
+            print(f"| {' | '.join(cells)} |", flush=True)
 
 
 if __name__ == "__main__":
