@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 
-from library_counts import count_parts, run_benchmark
+from library_counts import count_core, count_parts, run_benchmark
 
 from drake_haptics.evaluation.measuring.valgrind import counted
 from drake_haptics.loop.builder import BuildHapticDiagram
@@ -46,7 +46,7 @@ _WARM_UP, _TICKS = 800, 100
 def measure(scene: str = "sphere_pen") -> dict[str, float]:
     """Returns the core's instructions per tick of each of `LOOPS`."""
     return {
-        loop: sum(count for path, count in counts.items() if "/_core." in path) / _TICKS
+        loop: count_core(counts) / _TICKS
         for loop, counts in count_parts(__file__, scene, [*LOOPS]).items()
     }
 

@@ -7,7 +7,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
 from drake_haptics.common.errors import HapticsError
@@ -23,7 +23,7 @@ def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "profile"
         run_callgrind(arguments, str(file))
-        return _read_profile(file)
+        return read_profile(file)
 
 
 def count_parts(
@@ -43,12 +43,18 @@ def count_parts(
         file = Path(folder) / "profile"
         run_callgrind([program, scene, *parts], str(file))
         return {
-            part: _read_profile(file.with_suffix(f".{number}"))
+            part: read_profile(file.with_suffix(f".{number}"))
             for number, part in enumerate(parts, start=1)
         }
 
 
-def _read_profile(file: Path) -> dict[str, int]:
+def count_core(counts: Mapping[str, int]) -> int:
+    """Returns what is counted in the core and its binding themselves."""
+    return sum(count for path, count in counts.items() if "/_core." in path)
+
+
+def read_profile(file: Path) -> dict[str, int]:
+    """Returns the counts of a profile of callgrind, by the path of each library."""
     counts: dict[str, int] = {}
     paths: dict[str, str] = {}
     path, of_callee = "", False

@@ -19,6 +19,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from library_counts import count_core, read_profile
 
 from drake_haptics import SceneTracker, _core
 
@@ -107,27 +108,8 @@ def measure(file: Path, folder: Path) -> dict[str, list[int]]:
     for profile in folder.glob("profile.*"):
         text = profile.read_text(errors="replace")
         if named := re.search(r"Trigger: Client Request: tick \d+ (\w+)", text):
-            found[named[1]].append(_count_core(text))
+            found[named[1]].append(count_core(read_profile(profile)))
     return found
-
-
-def _count_core(profile: str) -> int:
-    """Returns what a profile counts in the core and its binding themselves."""
-    count, core, in_core, of_callee = 0, "", False, False
-    for line in profile.splitlines():
-        if named := re.match(r"(c?)ob=(\(\d+\))(?: (.*))?$", line):
-            if "/_core." in (named[3] or ""):
-                core = named[2]
-            if not named[1]:
-                in_core = named[2] == core
-        elif line.startswith("calls="):
-            # The next line tells what the callee took, which tells so itself.
-            of_callee = True
-        elif cost := re.match(r"[+*\-\d]\S* (\d+)$", line):
-            if in_core and not of_callee:
-                count += int(cost[1])
-            of_callee = False
-    return count
 
 
 def main() -> None:

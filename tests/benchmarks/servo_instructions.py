@@ -12,8 +12,10 @@ contact, under the constraint law. Counted are the core and its binding alone:
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
-from library_counts import count_parts, run_benchmark
+from library_counts import count_core, count_parts, run_benchmark
 from scipy.spatial.transform import Rotation
 
 from drake_haptics._core import (
@@ -39,8 +41,7 @@ _BASE = np.eye(7)[0]
 def measure(scene: str) -> dict[str, float]:
     """Returns the core's instructions in each period, by the part."""
     return {
-        part: sum(count for path, count in counts.items() if "/_core." in path)
-        / (_TICKS * _PER_TICK)
+        part: count_core(counts) / (_TICKS * _PER_TICK)
         for part, counts in count_parts(__file__, scene, PARTS).items()
     }
 
@@ -49,7 +50,8 @@ def run_counted(scene: str, part: str) -> None:
     """Steps until the tool is in contact, and then some ticks counted."""
     problem = make_problem(scene, _TICK_S * (_WARM_UP + _TICKS + 1))
     stepper = _make_stepper(problem)
-    tool = ServoTool(stepper, _BASE, _start(problem))
+    start = np.concatenate([problem.X_WG[0], np.zeros(6)])
+    tool = ServoTool(stepper, _BASE, start)
     law = ServoLaw(max_force_N=8.5, max_torque_Nm=0.5)
     handles = [
         _move_on(q, V, k * _PERIOD_S)
@@ -78,28 +80,18 @@ def run_counted(scene: str, part: str) -> None:
 
 def _make_stepper(problem: LoopProblem) -> ConstraintStepper:
     scene = problem.scene
-    coupling = scene.coupling
     stepper = ConstraintStepper(
         problem.tool.core,
         [item.core for item in problem.objects],
         find_skins(scene.contact, [item.material for item in scene.environment]),
         RigidToolDynamics(scene.tool.mass_kg, *problem.mass_properties()),
-        CouplingGains(
-            coupling.stiffness_N_per_m,
-            coupling.damping_Ns_per_m,
-            coupling.rotational_stiffness_Nm_per_rad,
-            coupling.rotational_damping_Nms_per_rad,
-        ),
+        CouplingGains(**asdict(scene.coupling)),
         pose_to_vector(problem.X_HT),
         _PERIOD_S,
     )
     for i, X_WO in enumerate(problem.X_WO):
         stepper.set_object_pose(i, pose_to_vector(X_WO))
     return stepper
-
-
-def _start(problem: LoopProblem) -> np.ndarray:
-    return np.concatenate([problem.X_WG[0], np.zeros(6)])
 
 
 def _move_on(
