@@ -43,11 +43,7 @@ def main() -> None:
     os.nice(10)
     try:
         with HeadlessBrowser(executable) as browser:
-            width, height = _SIZE
-            browser.call(
-                "Emulation.setDeviceMetricsOverride",
-                width=width, height=height, deviceScaleFactor=1, mobile=False,
-            )  # fmt: skip
+            browser.resize(*_SIZE)
             browser.open(run.url)
             page = Page(browser)
             _save(_photograph(page, run), "cockpit.png")

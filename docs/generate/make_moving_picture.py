@@ -81,11 +81,7 @@ def _record(executable: str, begin_s: float, end_s: float) -> PageRecording:
 
 def _open(browser: HeadlessBrowser, url: str) -> Page:
     """Opens the page as it is to be seen."""
-    width, height = _SIZE
-    browser.call(
-        "Emulation.setDeviceMetricsOverride",
-        width=width, height=height, deviceScaleFactor=1, mobile=False,
-    )  # fmt: skip
+    browser.resize(*_SIZE)
     browser.open(url)
     for panel in _FOLDED:
         browser.evaluate(f"document.getElementById('panel-{panel}').open = false")

@@ -46,10 +46,7 @@ def _take(
     os.nice(5)
     try:
         with HeadlessBrowser(executable) as browser:
-            browser.call(
-                "Emulation.setDeviceMetricsOverride",
-                width=_SIZE[0], height=_SIZE[1], deviceScaleFactor=1, mobile=False,
-            )  # fmt: skip
+            browser.resize(*_SIZE)
             browser.open(run.url)
             page = Page(browser)
             # Meshcat is there by then, and has its controls.
