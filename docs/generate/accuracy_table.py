@@ -19,7 +19,12 @@ from page_parts import find_part, make_parser, to_markdown
 from page_stamp import amend_page, show_parts
 
 from drake_haptics.cli.console import progress_bar
-from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, Row
+from drake_haptics.evaluation.accuracy.figures import (
+    NOT_SOUGHT,
+    AccuracyStudy,
+    Errors,
+    Row,
+)
 from drake_haptics.evaluation.accuracy.knobs import (
     AS_IT_IS,
     list_settings,
@@ -126,7 +131,7 @@ def measure_errors(
     scene = load_scene(find_scene(name))
     motion = record_motion(scene)
     truth = find_truth(make_reference(scene).apply(scene), motion)
-    measurement = Measurement(scene, motion, truth, None)
+    measurement = Measurement(scene, motion, truth, NOT_SOUGHT)
     found = {}
     for setting in filter(is_meant, list_settings(scene)):
         print(f"{name}: {setting.knob} {setting.label}", file=sys.stderr)

@@ -23,25 +23,13 @@ _TOLERANCE = 1e-2
 
 @dataclass(frozen=True)
 class PressedPlace:
-    """The time on its path at which a scene's hand stops, or why it does not.
+    """The time on its path at which a scene's hand stops.
 
     The scene's largest stable stiffness there is near those of other settings.
     """
 
-    time_s: float | None
-    near_N_per_m: float = math.inf
-    failure_reason: str = ""
-
-
-@dataclass(frozen=True)
-class StableStiffness:
-    """The largest stable stiffness of a coupling, or why it is unknown.
-
-    It is infinite if there is no limit.
-    """
-
-    stiffness_N_per_m: float | None
-    failure_reason: str = ""
+    time_s: float
+    near_N_per_m: float
 
 
 def measure_created_energy(scene: Scene, duration_s: float) -> float:
@@ -63,30 +51,40 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
     )
 
 
-def find_pressed_place(scene: Scene) -> PressedPlace:
-    """Returns the place where a scene's tool is pressed hardest and comes to rest."""
+def find_pressed_place(scene: Scene) -> PressedPlace | str:
+    """Returns where a scene's tool is pressed hardest and rests, or why nowhere."""
     try:
         held = hold_scene(scene)
         limit = _find_limit(scene, held, scene.coupling.stiffness_N_per_m)
     except (ValueError, RunError) as error:
-        return PressedPlace(None, failure_reason=str(error))
+        return str(error)
     return PressedPlace(held.time_s, limit)
 
 
-def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
+def find_stable_stiffness(
+    scene: Scene, place: PressedPlace | str
+) -> tuple[float | None, str]:
     """Finds the largest stable stiffness of a coupling with its tool held in contact.
 
     It is the translational one at which an eigenvalue of one tick reaches magnitude 1.
+
+    Args:
+        scene: The scene with the coupling.
+        place: Place where the tool is held, or the reason why there is no place.
+
+    Returns:
+        The stiffness, N/m, infinite if there is no limit; None if it is unknown, and
+        the reason, which is empty otherwise.
     """
-    if place.time_s is None:
-        return StableStiffness(None, place.failure_reason)
+    if isinstance(place, str):
+        return None, place
     if scene.contact.query_rate_hz is not None:
-        return StableStiffness(None, _TWO_RATES)
+        return None, _TWO_RATES
     try:
         held = hold_scene(scene, place.time_s)
-        return StableStiffness(_find_limit(scene, held, place.near_N_per_m))
+        return _find_limit(scene, held, place.near_N_per_m), ""
     except (ValueError, RunError) as error:
-        return StableStiffness(None, str(error))
+        return None, str(error)
 
 
 def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:

@@ -17,7 +17,6 @@ from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.progress import Progress, ignore_progress
 from drake_haptics.evaluation.accuracy.closed_loop import (
     PressedPlace,
-    StableStiffness,
     find_pressed_place,
     find_stable_stiffness,
     measure_created_energy,
@@ -72,14 +71,14 @@ _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 class Measurement:
     """Measures one quantity of a setting, as a task of `run_study`.
 
-    The scene's hand stops at the place for the stable stiffness; without such a place
-    this is not sought.
+    The scene's hand stops at the place for the stable stiffness; a text says why there
+    is no place.
     """
 
     scene: Scene
     motion: RecordedMotion
     truth: Truth
-    place: PressedPlace | None
+    place: PressedPlace | str
 
     def __call__(self, task: dict[str, Any]) -> dict[str, Any]:
         """Returns the result of a task of `make_task`, or the reason for its failure.
@@ -102,14 +101,12 @@ class Measurement:
 
     def _measure_errors(self, scene: Scene) -> dict[str, Any]:
         haptic = cached_build(scene)
-        stiffness = StableStiffness(None, NOT_SOUGHT)
-        if self.place is not None:
-            stiffness = find_stable_stiffness(scene, self.place)
+        stiffness_N_per_m, why_not = find_stable_stiffness(scene, self.place)
         errors = replace(
             measure_open_loop(scene, self.motion, self.truth),
             energy_created_J=measure_created_energy(scene, self.duration_s),
-            stable_stiffness_N_per_m=stiffness.stiffness_N_per_m,
-            stiffness_why_not=stiffness.failure_reason,
+            stable_stiffness_N_per_m=stiffness_N_per_m,
+            stiffness_why_not=why_not,
         )
         num_objects = sum(len(part.pieces) for part in haptic.environment)
         pieces = [len(haptic.tool.pieces), num_objects]
@@ -320,7 +317,7 @@ def _prepare(scene: Scene, report: Progress, quick: bool) -> Measurement:
     motion = record_motion(scene, choose_duration(scene, _QUICK_S) if quick else None)
     report("finding the truth", _TRUTH)
     truth = find_truth(make_reference(scene).apply(scene), motion)
-    place = None
+    place: PressedPlace | str = NOT_SOUGHT
     if not quick:
         report("looking for the firmest contact", _PRESS)
         # One thread, as in a task, gives the same bits on any number of cores.
