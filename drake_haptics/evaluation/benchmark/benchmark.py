@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from importlib.metadata import version
@@ -25,7 +25,7 @@ from drake_haptics.evaluation.benchmark.pair_tables import (
     ratio_table,
     time_table,
 )
-from drake_haptics.evaluation.benchmark.pairs import KINDS, SIZES, make_pair
+from drake_haptics.evaluation.benchmark.pairs import KINDS, SIZES, PairShape, make_pair
 from drake_haptics.evaluation.benchmark.python_pairs import (
     PythonFigures,
     run_python_pair,
@@ -119,97 +119,77 @@ def run_benchmarks(
     makers = scene_makers(effort.motions, meshes)  # first, as it checks the folder
     figures = BenchFigures(machine=describe_machine())
     figures.libraries.update({library.name: library.version for library in outside})
-    run: dict[str, Callable[..., None]] = {
-        "pairs": _run_pairs,
-        "python": _run_python,
-        "scenes": partial(_run_scenes, makers),
-        "loop": _run_loop,
-    }
+    run = _Run(figures, effort, makers, progress, outside)
     for part in PARTS:
         if part in parts:
-            run[part](figures, effort, progress, outside)
+            getattr(run, f"measure_{part}")()
     return figures
 
 
-def _run_pairs(
-    figures: BenchFigures,
-    effort: Effort,
-    progress: Progress,
-    outside: Sequence[type[OutsideLibrary]],
-) -> None:
-    progress("looking for libraries, and compiling what calls them", 0.0)
-    libraries, missing = find_libraries()
-    libraries += map(make_pair_library, outside)
-    figures.libraries.update({library.name: library.version for library in libraries})
-    figures.missing.update(missing)
-    pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
-    for done, (kind, size) in enumerate(pairs):
-        progress(f"pairs: {kind}, {size} vertices", done / len(pairs))
-        pair = make_pair(kind, size)
-        figures.pairs.extend(run_pair(pair, libraries, effort.presses, effort.repeats))
+@dataclass(frozen=True)
+class _Run:
+    """Measures the parts and adds their figures."""
 
+    figures: BenchFigures
+    effort: Effort
+    makers: Mapping[str, Callable[[], SceneProblem]]
+    progress: Progress
+    outside: Sequence[type[OutsideLibrary]]
 
-def _run_python(
-    figures: BenchFigures,
-    effort: Effort,
-    progress: Progress,
-    outside: Sequence[type[OutsideLibrary]],
-) -> None:
-    if find_spec("coal") is None:
-        figures.missing["coal"] = "No module named 'coal'"
-        return
-    pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
-    for done, (kind, size) in enumerate(pairs):
-        progress(f"from Python: {kind}, {size} vertices", done / len(pairs))
-        pair = make_pair(kind, size)
-        figures.python.append(run_python_pair(pair, effort.repeats, outside))
+    def measure_pairs(self) -> None:
+        self.progress("looking for libraries, and compiling what calls them", 0.0)
+        libraries, missing = find_libraries()
+        libraries += map(make_pair_library, self.outside)
+        self.figures.libraries.update({one.name: one.version for one in libraries})
+        self.figures.missing.update(missing)
+        presses, repeats = self.effort.presses, self.effort.repeats
+        for pair in self._make_pairs("pairs"):
+            self.figures.pairs.extend(run_pair(pair, libraries, presses, repeats))
 
+    def measure_python(self) -> None:
+        if find_spec("coal") is None:
+            self.figures.missing["coal"] = "No module named 'coal'"
+            return
+        for pair in self._make_pairs("from Python"):
+            found = run_python_pair(pair, self.effort.repeats, self.outside)
+            self.figures.python.append(found)
 
-def _run_scenes(
-    makers: Mapping[str, Callable[[], SceneProblem]],
-    figures: BenchFigures,
-    effort: Effort,
-    progress: Progress,
-    outside: Sequence[type[OutsideLibrary]],
-) -> None:
-    if not effort.large_scenes:
-        makers = {n: make for n, make in makers.items() if n not in _LARGE_SCENES}
-    for done, (name, make) in enumerate(makers.items()):
-        progress(f"scenes: {name}", done / len(makers))
-        problem = make()
-        queries: dict[str, SceneQuery] = {NAME: DrakeHapticsScene(problem)}
-        queries.update(_scene_peer(figures, problem))
-        queries.update({one.name: OutsideScene(problem, one) for one in outside})
-        figures.scenes.extend(run_scene(problem, queries, effort.repeats))
+    def _make_pairs(self, what: str) -> Iterator[PairShape]:
+        pairs = [(kind, size) for kind in KINDS for size in self.effort.sizes]
+        for done, (kind, size) in enumerate(pairs):
+            self.progress(f"{what}: {kind}, {size} vertices", done / len(pairs))
+            yield make_pair(kind, size)
 
+    def measure_scenes(self) -> None:
+        left_out = () if self.effort.large_scenes else _LARGE_SCENES
+        names = [name for name in self.makers if name not in left_out]
+        for done, name in enumerate(names):
+            self.progress(f"scenes: {name}", done / len(names))
+            problem = self.makers[name]()
+            queries: dict[str, SceneQuery] = {NAME: DrakeHapticsScene(problem)}
+            try:
+                queries[COAL] = CoalScene(problem)
+            except (ImportError, NativeBuildError) as error:
+                self.figures.missing["coal"] = str(error)
+            queries |= {one.name: OutsideScene(problem, one) for one in self.outside}
+            found = run_scene(problem, queries, self.effort.repeats)
+            self.figures.scenes.extend(found)
 
-def _run_loop(
-    figures: BenchFigures,
-    effort: Effort,
-    progress: Progress,
-    outside: Sequence[type[OutsideLibrary]],
-) -> None:
-    from drake_haptics.evaluation.benchmark.loop.problem import make_problem
-    from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
+    def measure_loop(self) -> None:
+        from drake_haptics.evaluation.benchmark.loop.problem import make_problem
+        from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
 
-    for scene in effort.loop_scenes:
-        progress(f"loop: {scene}, recording the hand", 0.0)
-        problem = make_problem(scene, effort.loop_s)
-        loops, missing = make_loops(problem, outside)
-        figures.missing.update(missing)
-        for library in ("Drake", "MuJoCo"):
-            if any(name.startswith(library) for name in loops):
-                figures.libraries[library] = version(library.lower())
-        say = partial(progress, f"loop: {scene}, in turns")
-        figures.loop.extend(run_loops(problem, loops, effort.repeats, say))
-
-
-def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, SceneQuery]:
-    try:
-        return {COAL: CoalScene(problem)}
-    except (ImportError, NativeBuildError) as error:
-        figures.missing["coal"] = str(error)
-        return {}
+        for scene in self.effort.loop_scenes:
+            self.progress(f"loop: {scene}, recording the hand", 0.0)
+            problem = make_problem(scene, self.effort.loop_s)
+            loops, missing = make_loops(problem, self.outside)
+            self.figures.missing.update(missing)
+            for library in ("Drake", "MuJoCo"):
+                if any(name.startswith(library) for name in loops):
+                    self.figures.libraries[library] = version(library.lower())
+            say = partial(self.progress, f"loop: {scene}, in turns")
+            found = run_loops(problem, loops, self.effort.repeats, say)
+            self.figures.loop.extend(found)
 
 
 def make_tables(figures: BenchFigures) -> list[Table]:
