@@ -117,7 +117,7 @@ class Overlap:
     def __init__(self, tool: Mesh, solid: Surface):
         """Takes the tool and the solid."""
         self._tool, self._solid = tool, solid
-        self._models = _triangle_model(tool), _triangle_model(solid.mesh)
+        self._models = make_coal_model(tool), make_coal_model(solid.mesh)
 
     def __call__(self, q_WT: np.ndarray) -> bool:
         """Tells whether, at a pose (7,), surfaces cross or the tool is inside."""
@@ -138,15 +138,13 @@ class Overlap:
         return bool(result.isCollision())
 
 
-def _triangle_model(mesh: Mesh) -> coal.BVHModelOBBRSS:
+def make_coal_model(surface: Mesh) -> coal.BVHModelOBBRSS:
+    """Returns the triangles of a mesh, or of what has such vertices and triangles."""
     model = coal.BVHModelOBBRSS()
-    model.beginModel(len(mesh.triangles), len(mesh.vertices))
-    vertices = coal.StdVec_Vec3s()
-    for v in mesh.vertices:
-        vertices.append(v)
-    triangles = coal.StdVec_Triangle()
-    for t in mesh.triangles:
-        triangles.append(coal.Triangle(*map(int, t)))
-    model.addSubModel(vertices, triangles)
+    model.beginModel(len(surface.triangles), len(surface.vertices))
+    points, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    points.extend(list(surface.vertices))
+    faces.extend([coal.Triangle(*map(int, t)) for t in surface.triangles])
+    model.addSubModel(points, faces)
     model.endModel()
     return model

@@ -9,6 +9,7 @@ import pytest
 import trimesh
 from shapes.hand_tools import make_wrench
 from shapes.machine_room import make_machine_room
+from solid_surface import make_coal_model
 from surface_crossings import crossing_edges
 
 from drake_haptics.evaluation.models import load_machine_room, wrench_path
@@ -119,8 +120,8 @@ def test_the_wrench_is_a_tool_of_about_500_triangles():
 def test_the_wrench_touches_as_many_objects_as_the_papers_tool(room):
     """Counted by another library, on the triangles."""
     path = wrench_path(41)
-    models = {name: coal_model(s) for name, s in room.shapes.items()}
-    wrench = coal_model(make_wrench())
+    models = {name: make_coal_model(s) for name, s in room.shapes.items()}
+    wrench = make_coal_model(make_wrench())
     counts = [touched_objects(room, models, wrench, X_WT) for X_WT in path]
     assert counts[0] == counts[-1] == 0
     assert max(counts) == PAPER_TOUCHED
@@ -138,18 +139,6 @@ def test_the_wrench_moves_steadily_at_a_hands_speed():
     tips = path[:, :3, 3] + 0.21 * path[:, :3, 0]
     speed = np.linalg.norm(np.diff(tips, axis=0), axis=1) / (3.0 / (count - 1))
     assert 0.05 < speed.max() < 0.15
-
-
-def coal_model(surface):
-    model = coal.BVHModelOBBRSS()
-    model.beginModel(len(surface.triangles), len(surface.vertices))
-    points = coal.StdVec_Vec3s()
-    points.extend(list(surface.vertices))
-    triangles = coal.StdVec_Triangle()
-    triangles.extend([coal.Triangle(*map(int, t)) for t in surface.triangles])
-    model.addSubModel(points, triangles)
-    model.endModel()
-    return model
 
 
 def touched_objects(room, models, wrench, X_WT):
