@@ -10,6 +10,7 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Linearize, LinearSystem, SymbolicVectorSystem
 from scipy.linalg import expm
 from wall_loop import MASS_KG, PERIOD, make_loop, make_mass, make_wall
+from wall_motion import TABLE
 
 from drake_haptics.analysis import linearize_sampled
 
@@ -28,21 +29,10 @@ def calc_largest_stiffness(**loop):
     return low
 
 
-# b = 0.5 N·s/m, T = 1 ms: wall damping, delay in samples, hand, largest stiffness.
-TABLE = [
-    (0.0, 0, (0.0, 0.0, 0.0), 1000.83),
-    (0.0, 1, (0.0, 0.0, 0.0), 333.80),
-    (2.0, 0, (0.0, 0.0, 0.0), 4905.3),
-    (2.0, 1, (0.0, 0.0, 0.0), 1632.0),
-    (20.0, 0, (0.0, 0.0, 0.0), 33591.0),
-    (0.0, 1, (0.2, 5.0, 300.0), 3686.8),
-    (2.0, 1, (0.2, 5.0, 300.0), 4988.0),
-]
-
-
-@pytest.mark.parametrize(("B", "delay", "hand", "limit"), TABLE)
-def test_the_largest_stiffness_of_a_sampled_wall_is_known(B, delay, hand, limit):
-    found = calc_largest_stiffness(wall_damping=B, delay=delay, hand=hand)
+@pytest.mark.parametrize(("b", "B", "delay", "hand", "limit", "_"), TABLE)
+def test_the_largest_stiffness_of_a_sampled_wall_is_known(b, B, delay, hand, limit, _):
+    held = tuple(hand.values()) or (0.0, 0.0, 0.0)
+    found = calc_largest_stiffness(damping=b, wall_damping=B, delay=delay, hand=held)
     assert found == pytest.approx(limit, rel=2e-5)
 
 
