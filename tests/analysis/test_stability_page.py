@@ -219,12 +219,6 @@ def test_names_are_escaped(sample, tmp_path):
     assert "Bounds that the coupling breaks" in page
 
 
-def test_a_page_cannot_take_its_pictures_name(sample, tmp_path):
-    with pytest.raises(ValueError, match=r"must not be called page\.png"):
-        write_stability_page(sample, "a_scene", tmp_path / "page.png")
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_json_has_no_number_that_is_none(sample):
     endless = replace(
         sample, delay_margin_s=math.inf, limits=(make_limits(math.inf), make_limits(0))
