@@ -18,7 +18,7 @@ from pathlib import Path
 
 from effect_child import CORE_CALLS, EFFECTS, TICKS
 from effect_rows import make_rows
-from page_parts import read_part, replace_part
+from page_parts import read_part, replace_part, to_markdown
 from page_stamp import write_page
 
 from drake_haptics.evaluation.measuring.valgrind import count_instructions
@@ -122,17 +122,14 @@ def make_table(costs: Costs) -> str:
 
 def make_proof(costs: Costs) -> str:
     """Returns the table that shows the cost of an effect that is not named."""
-    lines = [
-        _row(["loop", "instructions per tick: least", "most"]),
-        _row(["---", "--:", "--:"]),
-    ]
+    rows = [["loop", "instructions per tick: least", "most"]]
     for name, counts in [
         ("no effect named", costs.bare),
         ("the same, what belongs to effects taken away", costs.forbidden),
         ("the same, other things taken away", costs.control),
     ]:
-        lines.append(_row([name, f"{min(counts):,.0f}", f"{max(counts):,.0f}"]))
-    return "\n".join(lines)
+        rows.append([name, f"{min(counts):,.0f}", f"{max(counts):,.0f}"])
+    return to_markdown(rows, numbers=2).rstrip()
 
 
 def with_figures(page: str, costs: Costs) -> str:

@@ -6,13 +6,13 @@ python docs/generate/press_table.py --points 1000 --jobs 3 --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_parts import make_parser
 from press_cells import (
     REAL,
     SHIPPED,
@@ -25,7 +25,7 @@ from press_cells import (
     run_points,
 )
 from press_page import MOTIONS as PAGE_MOTIONS
-from press_page import write_presses
+from press_page import PAGE, write_presses
 from press_rig import GAINS, MOTIONS
 from press_tools import make_tools
 from press_verdict import Verdict
@@ -36,9 +36,7 @@ CHUNK = 25
 
 def main() -> None:
     """Runs the presses that the arguments name."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--points", type=int, default=40)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--solids", nargs="*", default=[*SHIPPED, *REAL])
@@ -55,9 +53,6 @@ def main() -> None:
     parser.add_argument("--gains", nargs="*", default=[*GAINS], choices=GAINS)
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--failures", type=Path, help="file that gets each failure")
-    parser.add_argument(
-        "--write", action="store_true", help="write docs/verification/contact-laws.md"
-    )
     args = parser.parse_args()
     if args.write and {*args.motions} != {*PAGE_MOTIONS}:
         parser.error(f"--write needs --motions {' '.join(PAGE_MOTIONS)}")

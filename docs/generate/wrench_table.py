@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
-from page_parts import make_parser
+from page_parts import make_parser, to_markdown
 from page_stamp import write_page
 from wrench_chain import (
     DAMPING_NS_PER_M,
@@ -122,9 +122,8 @@ def rows() -> Iterator[list[str]]:
 def main() -> None:
     """Prints the table, and writes the page if asked to."""
     write = make_parser(__doc__, PAGE).parse_args().write
-    lines = ["| " + " | ".join(cells) + " |" for cells in (TITLES, *rows())]
-    lines.insert(1, "|" + "---|" * len(TITLES))
-    print(*lines, sep="\n")
+    table = to_markdown([TITLES, *rows()])
+    print(table)
     if write:
         write_page(
             PAGE,
@@ -137,7 +136,7 @@ def main() -> None:
                 mu=MU,
                 r=R,
                 b=1e3 * B_M,
-                rows="\n".join(lines),
+                rows=table.rstrip(),
             ),
             __file__,
         )
