@@ -21,6 +21,13 @@ def to_markdown(rows: Iterable[Sequence[str]], numbers: int = 0) -> str:
     return "\n".join(lines) + "\n"
 
 
+def read_table(text: str) -> list[list[str]]:
+    """Returns the cells of a text's table, its head first, without the line below."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    head, _, *body = [[x.strip() for x in line.split("|")[1:-1]] for line in lines]
+    return [head, *body]
+
+
 def find_part(page: str, name: str) -> slice:
     """Returns the place of a part in a page, by the part's name.
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from page_parts import read_part, to_markdown
+from page_parts import read_part, read_table, to_markdown
 from page_stamp import describe_commit, write_parts
 from press_cells import TITLES
 from press_rig import GAINS, LARGEST_FORCE_N
@@ -113,8 +112,7 @@ def read_gains() -> list[dict[str, str]]:
 
 
 def _read_cells(part: str) -> list[list[str]]:
-    text = read_part(PAGE.read_text(encoding="utf-8"), part)
-    return [line.split(" | ") for line in re.findall(r"(?m)^\| (.*) \|$", text)[1:]]
+    return read_table(read_part(PAGE.read_text(encoding="utf-8"), part))[1:]
 
 
 def _describe_gains(

@@ -8,11 +8,10 @@ loops are taken from docs/benchmarks.md, which write_docs.py writes.
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 
-from page_parts import make_parser, replace_part, to_markdown
+from page_parts import make_parser, read_table, replace_part, to_markdown
 from page_stamp import describe_commit, make_stamp
 
 from drake_haptics import BuildHapticDiagram, find_scene, list_scenes, load_scene, run
@@ -122,7 +121,7 @@ def read_rows(page: str, title: str) -> list[list[str]]:
     """Returns the rows of the first table below a title of a page, without its head."""
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     section = text.split(f"### {title}\n")[1].split("\n###")[0]
-    return [row.split(" | ") for row in re.findall(r"(?m)^\| (.*) \|$", section)[2:]]
+    return read_table(section)[1:]
 
 
 def main() -> None:

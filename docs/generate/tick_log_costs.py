@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from page_parts import read_part, replace_part
+from page_parts import read_part, read_table, replace_part, to_markdown
 from page_stamp import amend_page, write_page
 
 from drake_haptics.evaluation.measuring.valgrind import count_instructions, counted
@@ -97,13 +97,6 @@ def measure_bytes(folder: Path, names: Sequence[str]) -> dict[str, float]:
     return found
 
 
-def read_rows(page: str) -> dict[str, str]:
-    """Returns the rows of the page's table."""
-    lines = read_part(page).splitlines()
-    rows = [line[2:-2].split(" | ") for line in lines if line.startswith("| ")]
-    return {name: value for name, value in rows[2:]}
-
-
 def measure(kept_time: str | None) -> list[tuple[str, str]]:
     """Returns the rows of the table.
 
@@ -141,14 +134,13 @@ def main() -> None:
         sys.exit("valgrind is not installed")
     keeps_times = "--keep-times" in sys.argv[1:]
     page = PAGE.read_text(encoding="utf-8")
-    lines = ["| cost of a log | |", "| --- | --: |"]
-    rows = measure(read_rows(page)[_TIME] if keeps_times else None)
-    lines += [f"| {name} | {value} |" for name, value in rows]
-    table = "\n".join(lines)
+    told = dict(read_table(read_part(page)))
+    rows = measure(told[_TIME] if keeps_times else None)
+    table = to_markdown([("cost of a log", ""), *rows], numbers=1)
     print(table)
     if "--write" not in sys.argv[1:]:
         return
-    page = replace_part(page, f"{table}\n")
+    page = replace_part(page, table)
     if keeps_times:
         amend_page(PAGE, page, __file__, "all but times")
     else:

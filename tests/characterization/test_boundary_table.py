@@ -4,8 +4,7 @@ import re
 
 import pytest
 from boundary_table import PAGE, PARTS, PICTURE
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 
 
 @pytest.fixture(scope="module")

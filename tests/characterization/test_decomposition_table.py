@@ -20,9 +20,8 @@ from decomposition_table import (
     make_parts,
 )
 from hull_truth import deepest_outside, deepest_surface, lost_share
-from markdown_page import read_table
 from mesh_samples import box, l_prism
-from page_parts import read_part
+from page_parts import read_part, read_table
 
 from drake_haptics import Mesh, decompose
 

@@ -7,8 +7,7 @@ import pytest
 from energy_table import SOURCES, split_energy
 from law_runs import Penalty, list_places, run_handle
 from law_table import PAGE
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 
 
 def press(solid, point):

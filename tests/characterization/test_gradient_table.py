@@ -14,8 +14,7 @@ from gradient_table import (
     measure,
     measure_core,
 )
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 
 
 def test_the_page_has_all_pairs_and_none_is_beyond_the_target():

@@ -21,8 +21,7 @@ from law_table import (
     measure_rest,
     measure_slides,
 )
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from press_cells import SHIPPED
 from press_rig import PERIOD_S
 

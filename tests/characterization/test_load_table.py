@@ -2,8 +2,7 @@
 
 import load_table
 import pytest
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
 from drake_haptics.systems.contact import load_shedding

@@ -2,8 +2,7 @@
 
 import loop_gradient_table
 from loop_gradient_table import PAGE, SCENES, TITLES, rows
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 
 
 def test_the_page_has_every_scene_within_its_target():

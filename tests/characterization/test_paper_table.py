@@ -4,8 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from paper_samples import make_evaluation
 from paper_table import DRAWN, PAGE, file_of, keep_times, with_figures
 

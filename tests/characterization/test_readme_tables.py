@@ -1,10 +1,8 @@
 """The tables of loops and of shipped scenes are those of what they speak of."""
 
-import re
-
 import pytest
 import readme_tables
-from page_parts import read_part
+from page_parts import read_part, read_table
 from readme_tables import (
     BENCHMARKS,
     README,
@@ -27,11 +25,8 @@ def test_the_loops_of_the_readme_are_those_of_their_page():
 
 def read_scene_rows():
     """Returns the cells of the table of scenes, by scene."""
-    rows = [
-        [cell.strip() for cell in row.split("|")]
-        for row in re.findall(r"(?m)^\| (.*) \|$", read_part(TEXT, "scenes"))
-    ]
-    return {row[0].strip("`"): row[1:] for row in rows[1:]}
+    _, *rows = read_table(read_part(TEXT, "scenes"))
+    return {row[0].strip("`"): row[1:] for row in rows}
 
 
 def test_each_scene_has_a_row():

@@ -3,8 +3,7 @@
 import re
 
 import pytest
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from servo_loop import NOMINAL_HAND, SERVO, simulate
 from servo_table import PAGE, TABLES, TRACES
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from slide_scenes import fifty_pieces, fifty_pieces_path
 from sliding_table import HEAD, HEIGHTS_M, PAGE, make_seams, slide_over
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from servo_table import PAGE
 from solved_wall import (
     PRESSED_N,

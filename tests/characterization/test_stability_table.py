@@ -5,8 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from stability_table import AGAINST, PAGE, PICTURE, SCENES, make_limits
 
 from drake_haptics.analysis import analyze_held_scene, hold_scene

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import symptom_run
 import symptom_table
-from markdown_page import read_table
-from page_parts import read_part
+from page_parts import read_part, read_table
 from rich.console import Console
 from symptom_cases import CASES, COUPLING
 from symptom_run import Case, Ticks

@@ -3,9 +3,8 @@
 import math
 
 import pytest
-from markdown_page import read_table
 from other_arm import PRESET
-from page_parts import read_part
+from page_parts import read_part, read_table
 from twin_table import HEAD, PAGE, TWINS, find_eigenvalue_limit, measure_swing
 
 TEXT = PAGE.read_text(encoding="utf-8")

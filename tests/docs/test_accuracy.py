@@ -20,8 +20,7 @@ from accuracy_table import (
     with_errors,
 )
 from command_line import invoke
-from markdown_page import read_table
-from page_parts import find_part, read_part, replace_part
+from page_parts import find_part, read_part, read_table, replace_part
 
 from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS, list_settings
 from drake_haptics.evaluation.accuracy.report import COLUMNS

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
 import write_docs
 from bench_samples import EVERYTHING
 from markdown_page import find_blocks
-from page_parts import read_part
+from page_parts import read_part, read_table
 from write_docs import LEFT_OUT, NOTED, PAGE, show_tables, with_figures
 
 from drake_haptics.evaluation.benchmark.benchmark import Effort, make_tables
@@ -32,9 +31,7 @@ _SECTION = read_part(PAGE.read_text(encoding="utf-8"))
 
 def rows_below(title: str) -> list[list[str]]:
     """The cells of the table under a title, headings first."""
-    section = _SECTION.split(f"### {title}\n")[1].split("###")[0]
-    rows = re.findall(r"^\| (.*) \|$", section, flags=re.MULTILINE)
-    return [row.split(" | ") for row in rows]
+    return read_table(_SECTION.split(f"### {title}\n")[1].split("###")[0])
 
 
 def test_every_table_is_there_with_its_headings() -> None:
@@ -54,13 +51,13 @@ def test_every_table_is_there_with_its_headings() -> None:
 def test_every_pair_and_scene_has_a_row() -> None:
     pairs = [f"{kind}, {size}" for kind in KINDS for size in SIZES]
     title = "Convex pairs: times in µs, median / p99"
-    assert [row[0] for row in rows_below(title)[2:]] == pairs
-    scenes = [row[0] for row in rows_below(make_tables(EVERYTHING)[-1].title)[2:]]
+    assert [row[0] for row in rows_below(title)[1:]] == pairs
+    scenes = [row[0] for row in rows_below(make_tables(EVERYTHING)[-1].title)[1:]]
     assert set(scenes) >= set(scene_makers(1))
 
 
 def test_every_library_has_a_row() -> None:
-    libraries = [row[0] for row in rows_below(make_tables(EVERYTHING)[0].title)[2:]]
+    libraries = [row[0] for row in rows_below(make_tables(EVERYTHING)[0].title)[1:]]
     for name in ("drake_haptics", "coal", "MuJoCo", "FCL", "Bullet", "Drake"):
         assert any(row.startswith(name) for row in libraries)
 

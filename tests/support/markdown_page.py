@@ -62,10 +62,3 @@ def find_spans(text: str) -> list[str]:
 def find_span_commands(text: str) -> list[str]:
     """Returns the code spans that are commands of this package."""
     return [span for span in find_spans(text) if span.startswith(f"{PROGRAM} ")]
-
-
-def read_table(text: str) -> list[list[str]]:
-    """Returns the cells of a text's table, its head first, without the line below."""
-    lines = [line for line in text.splitlines() if line.startswith("|")]
-    head, _, *body = [[x.strip() for x in line.split("|")[1:-1]] for line in lines]
-    return [head, *body]

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import time
 from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 from fake_clock import FakeClock
-from page_parts import read_part
+from page_parts import read_part, read_table
 from write_docs import PAGE, show_tables, with_tables
 
 from drake_haptics.common.real_time import RealTimePacer
@@ -228,9 +227,7 @@ def shown_below(title: str) -> str:
 
 def rows_below(title: str) -> list[list[str]]:
     """The cells of that table, its head first, without the line below."""
-    shown = shown_below(title)
-    rows = re.findall(r"^\| (.*) \|$", shown, flags=re.MULTILINE)
-    return [row.split(" | ") for row in (rows[0], *rows[2:])]
+    return read_table(shown_below(title))
 
 
 def test_the_page_has_the_tables_with_their_headings_and_rows() -> None:
