@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from sampled_loop import SampledLoop
 
 from drake_haptics.analysis.exact_boundary import (
     calc_boundary_peak,
@@ -13,10 +14,8 @@ from drake_haptics.bounds.sampled_spring import calc_sampled_stiffness
 
 
 def make_loop_polynomial(alpha, beta, delay):
-    """Returns 2 z^(d+1) (z - 1)² + (α z + β (z - 1)) (z + 1), highest power first."""
-    mass = np.zeros(delay + 4)
-    mass[:3] = 2.0, -4.0, 2.0
-    return np.polyadd(mass, np.polymul([alpha + beta, -beta], [1.0, 1.0]))
+    """Returns z^(d+1) (z - 1)² + (α z + β (z - 1)) (z + 1)/2, highest power first."""
+    return SampledLoop(1.0, 1.0, delay=delay).make_polynomial(alpha, beta)
 
 
 def calc_largest_root(alpha, beta, delay):

@@ -58,6 +58,13 @@ def _scene(folder: Path, tool: trimesh.Trimesh) -> Scene:
 
 def _problem(folder: Path, tool: trimesh.Trimesh) -> tuple[PeerProblem, np.ndarray]:
     """The tool going down into the block, and how deep its lowest point is (n,), m."""
+    motion, depth = _lower(tool)
+    haptic = build_without_scene_warnings(_scene(folder, tool))
+    return make_peer_problem(haptic, motion, _truth(depth)), depth
+
+
+def _lower(tool: trimesh.Trimesh) -> tuple[RecordedMotion, np.ndarray]:
+    """The motion of `_problem`, and the depth."""
     depth = np.linspace(-1e-4, _DEEPEST_M, _TICKS)
     X_WT = np.zeros((_TICKS, 7))
     X_WT[:, 0] = 1.0
@@ -65,9 +72,7 @@ def _problem(folder: Path, tool: trimesh.Trimesh) -> tuple[PeerProblem, np.ndarr
     X_WT[:, 4:6] = 0.011, -0.007
     X_WT[:, 6] = _TOP_M - depth - tool.vertices[:, 2].min()
     rest = np.zeros((_TICKS, 6))
-    motion = RecordedMotion(1e-3, X_WT, rest, X_WT, rest)
-    haptic = build_without_scene_warnings(_scene(folder, tool))
-    return make_peer_problem(haptic, motion, _truth(depth)), depth
+    return RecordedMotion(1e-3, X_WT, rest, X_WT, rest), depth
 
 
 def _truth(depth: np.ndarray) -> Truth:
@@ -147,16 +152,13 @@ def test_the_modulus_makes_forces_like_the_references(
 
 
 def test_rows_have_figures_or_say_why_not(tmp_path: Path) -> None:
-    scene = _scene(tmp_path, trimesh.creation.box([0.02, 0.03, 0.04]))
+    tool = trimesh.creation.box([0.02, 0.03, 0.04])
+    scene = _scene(tmp_path, tool)
     # An effect that no library has: the truth is found again without it.
     scene.effects.gravity = GravityParameters()
     scene.effects.friction = FrictionParameters()
     scene.environment[0].material.friction_coefficient = 0.5
-    depth = np.linspace(-1e-4, _DEEPEST_M, _TICKS)
-    X_WT = np.tile([1.0, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (_TICKS, 1))
-    X_WT[:, 6] = 2 * _TOP_M - depth
-    rest = np.zeros((_TICKS, 6))
-    motion = RecordedMotion(1e-3, X_WT, rest, X_WT, rest)
+    motion, depth = _lower(tool)
     seen: list[float] = []
     weighed = replace(_truth(depth), F_Tcm_W=np.ones((_TICKS, 6)))
     rows = run_peers(
