@@ -15,14 +15,13 @@ from continuity_walk import (
     walk,
 )
 from press_rig import Gains
-from wrench_chain import METHODS, cluster
+from wrench_chain import METHODS, cluster, push
 
 from drake_haptics import _core
 
 # A ratio over this counts as a jump, and a contact's change of so many times the
 # motion as the query's doing.
 JUMP = 10.0
-_ZEROS3, _ZEROS6 = np.zeros((1, 3)), np.zeros((1, 6))
 
 
 @dataclass(frozen=True)
@@ -85,10 +84,7 @@ def elastic_wrench(
 ) -> np.ndarray:
     """Returns the chain's torque about M and force (6,) at rest, N·m and N."""
     clusters = cluster(contacts, method, gains.tolerance_m, gains.delta_m)
-    stiffness = np.array([gains.stiffness_N_per_m])
-    return _core.penalty_force(
-        clusters, p_WM, _ZEROS6[0], _ZEROS3, _ZEROS6, stiffness, np.zeros(1)
-    ).F_To_W
+    return push(clusters, gains.stiffness_N_per_m, p_WTo=p_WM).F_To_W
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from page_stamp import show_parts
 from press_cells import SHIPPED
 from press_rig import GAINS, PERIOD_S
 from scipy.spatial.transform import Rotation
+from wrench_chain import push
 
 from drake_haptics import _core
 
@@ -44,16 +45,8 @@ class Springs:
         self.p_WT = q_WT[4:]
         self.contacts = tracker.query(q_WT)
         clusters = _core.share_stiffness(self.contacts, _GAINS.tolerance_m)
-        self.F_W = _core.penalty_force(
-            clusters,
-            self.p_WT,
-            np.zeros(6),
-            np.zeros((1, 3)),
-            np.zeros((1, 6)),
-            np.array([_GAINS.stiffness_N_per_m]),
-            np.zeros(1),
-        ).wrench_model[:6]
         k = _GAINS.stiffness_N_per_m
+        self.F_W = push(clusters, k, p_WTo=self.p_WT).wrench_model[:6]
         depth_m = _GAINS.tolerance_m - clusters.distance
         self.held_J = 0.5 * k * float(clusters.compression @ depth_m)
         # By the pair of pieces: place among the contacts, force.

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from press_tools import PressTool
 from scipy.spatial.transform import Rotation
+from wrench_chain import push
 
 from drake_haptics import _core
 from drake_haptics.geometry.mesh.mesh import Mesh
@@ -183,14 +184,12 @@ class PenaltyLoop:
         self.q_WH = q_WH.copy()
         contacts = self._tracker.query(state[:7])
         clusters = _core.share_stiffness(contacts, gains.tolerance_m)
-        contact = _core.penalty_force(
+        contact = push(
             clusters,
-            state[4:7],
-            state[7:],
-            np.zeros((1, 3)),
-            np.zeros((1, 6)),
-            np.array([gains.stiffness_N_per_m]),
-            np.array([gains.damping_Ns_per_m]),
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
+            p_WTo=state[4:7],
+            V_WT=state[7:],
         ).wrench_model
         coupling = coupling_wrench(q_WH, V_WH, _REST, state[:7], state[7:], COUPLING)[
             :78

@@ -9,7 +9,7 @@ import numpy as np
 from contact_samples import hull
 from press_rig import PERIOD_S, Gains
 from scipy.spatial.transform import Rotation
-from wrench_chain import cluster
+from wrench_chain import cluster, push
 
 from drake_haptics import _core
 from drake_haptics.geometry.mesh.mesh import Mesh
@@ -97,14 +97,9 @@ def feel(
 ) -> Felt:
     """Returns the force of the project's chain for a tool that moves at v_WT."""
     clusters = cluster(contacts, method, gains.tolerance_m, gains.delta_m)
-    F_To_W = _core.penalty_force(
-        clusters,
-        np.zeros(3),
-        np.concatenate([np.zeros(3), v_WT]),
-        np.zeros((1, 3)),
-        np.zeros((1, 6)),
-        np.array([gains.stiffness_N_per_m]),
-        np.array([gains.damping_Ns_per_m]),
+    V_WT = np.concatenate([np.zeros(3), v_WT])
+    F_To_W = push(
+        clusters, gains.stiffness_N_per_m, gains.damping_Ns_per_m, V_WT=V_WT
     ).F_To_W
     return Felt(np.array(F_To_W[3:]), len(clusters))
 

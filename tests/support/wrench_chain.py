@@ -115,6 +115,20 @@ def run_chain(
     )
 
 
+def push(
+    clusters: _core.ClusterSet,
+    stiffness_N_per_m: float,
+    damping_Ns_per_m: float = 0.0,
+    *,
+    p_WTo: np.ndarray = AT_REST[:3],
+    V_WT: np.ndarray = AT_REST,
+) -> _core.PenaltyWrench:
+    """Returns the wrench of one object that rests, on a tool at rest or moving."""
+    gains = np.array([stiffness_N_per_m]), np.array([damping_Ns_per_m])
+    still = np.zeros((1, 3)), np.zeros((1, 6))
+    return _core.penalty_force(clusters, p_WTo, V_WT, *still, *gains)
+
+
 def cluster(
     contacts: _core.ContactSet, method: str, tolerance_m: float, delta_m: float
 ) -> _core.ClusterSet:

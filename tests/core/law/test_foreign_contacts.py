@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
+from wrench_chain import push
 
 from drake_haptics import _core
 
@@ -38,15 +39,7 @@ def test_each_pushes_along_its_normal() -> None:
     # At right angles they have nothing in common (shared_stiffness.h).
     columns = _columns([-1e-4, 5e-4], [[0, 0, 1], [1, 0, 0]])
     clusters = _core.share_stiffness(_core.contact_set(**columns), _TOLERANCE_M)
-    wrench = _core.penalty_force(
-        clusters,
-        np.zeros(3),
-        np.zeros(6),
-        np.zeros((1, 3)),
-        np.zeros((1, 6)),
-        np.array([1e3]),
-        np.array([0.0]),
-    )
+    wrench = push(clusters, 1e3)
     np.testing.assert_allclose(wrench.F_To_W[3:], [0.5, 0.0, 1.1], atol=1e-12)
 
 

@@ -19,6 +19,7 @@ from friction_rig import (
 from scipy.spatial.transform import Rotation
 from slide_rig import make_slide_tools
 from slide_scenes import fifty_pieces, fifty_pieces_path
+from wrench_chain import push
 
 from drake_haptics import _core
 
@@ -163,15 +164,7 @@ def test_contacts_that_merge_or_split_keep_the_sum_of_forces() -> None:
     contacts = tracker.query(rig.state[:7])
     merged = _core.cluster_contacts(contacts, 10e-3, TOLERANCE_M)
     assert len(merged) == 1
-    none = (np.zeros((1, 3)), np.zeros((1, 6)))
-    wrench = _core.penalty_force(
-        merged,
-        rig.state[4:7],
-        np.zeros(6),
-        *none,
-        np.array([2 * STIFFNESS_N_PER_M]),
-        np.zeros(1),
-    )
+    wrench = push(merged, 2 * STIFFNESS_N_PER_M, p_WTo=rig.state[4:7])
     one = make_model().step(
         rig.memory, merged, wrench, rig.state[:7].copy(), np.zeros(0)
     )

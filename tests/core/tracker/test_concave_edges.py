@@ -7,6 +7,7 @@ import pytest
 from contact_samples import decomposed
 from hollow_block import EDGES_X, height, hollow_block, planes, spike, swept
 from scipy.spatial import ConvexHull
+from wrench_chain import push
 
 from drake_haptics import _core
 
@@ -26,15 +27,8 @@ def followed(tool, solid, tolerance, p):
 
 
 def force(contacts, p, tolerance):
-    return _core.penalty_force(
-        _core.share_stiffness(contacts, tolerance),
-        p,
-        np.zeros(6),
-        np.zeros((1, 3)),
-        np.zeros((1, 6)),
-        np.array([STIFFNESS_N_PER_M]),
-        np.array([0.0]),
-    ).F_To_W[3:]
+    clusters = _core.share_stiffness(contacts, tolerance)
+    return push(clusters, STIFFNESS_N_PER_M, p_WTo=p).F_To_W[3:]
 
 
 def round_tool():

@@ -9,6 +9,7 @@ from press_tools import MODELS, make_tools
 from scipy.spatial.transform import Rotation
 from slide_rig import make_slide_tools
 from slide_scenes import TOP_M, fifty_pieces
+from wrench_chain import push
 
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
@@ -64,12 +65,5 @@ def test_an_edge_on_a_face_in_pieces_is_pushed_as_by_the_whole_face(tilt, share)
 def push_at(tool, solid, q_WT):
     """Returns the torque and force (6,) of contact at the tool's origin."""
     contacts = _core.SceneTracker(tool, [solid], TOLERANCE_M).query(q_WT)
-    return _core.penalty_force(
-        _core.share_stiffness(contacts, TOLERANCE_M),
-        q_WT[4:],
-        np.zeros(6),
-        np.zeros((1, 3)),
-        np.zeros((1, 6)),
-        np.array([2e4]),
-        np.zeros(1),
-    ).F_To_W
+    clusters = _core.share_stiffness(contacts, TOLERANCE_M)
+    return push(clusters, 2e4, p_WTo=q_WT[4:]).F_To_W
