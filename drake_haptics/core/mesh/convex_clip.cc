@@ -38,9 +38,11 @@ bool MeetsInterior(const std::array<Vec3, 3>& triangle,
   };
   // Most triangles near the body are beyond one of its planes.
   if (*likely < planes.size() && is_beyond(planes[*likely])) return false;
-  const auto beyond = std::find_if(planes.begin(), planes.end(), is_beyond);
-  if (beyond != planes.end()) {
-    *likely = beyond - planes.begin();
+  // Those of a body's newest facets are the last ones, and a triangle that was
+  // not in the way of the body before is beyond one of them or near them.
+  const auto beyond = std::find_if(planes.rbegin(), planes.rend(), is_beyond);
+  if (beyond != planes.rend()) {
+    *likely = planes.rend() - beyond - 1;
     return false;
   }
   return !ClipPolygon({triangle.begin(), triangle.end()}, planes, inset)
