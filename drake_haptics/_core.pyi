@@ -1137,7 +1137,7 @@ class RigidToolDynamics:
         Tool of `mass_kg`, center of mass (3,) m and rotational inertia about it (3, 3) kg·m², both in the tool's frame.
 
         Raises:
-            ValueError: not a physical inertia.
+            ValueError: a value is not finite, the mass not above 0, or the inertia not symmetric and positive definite.
         """
 
     @property

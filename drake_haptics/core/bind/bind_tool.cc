@@ -180,7 +180,8 @@ void BindRigidTool(nb::module_& m) {
           nb::arg("mass_kg"), nb::arg("p_TTcm"), nb::arg("I_TTcm_T"),
           "Tool of `mass_kg`, center of mass (3,) m and rotational inertia "
           "about it (3, 3) kg·m², both in the tool's frame.\n\n"
-          "Raises:\n    ValueError: not a physical inertia.")
+          "Raises:\n    ValueError: a value is not finite, the mass not above "
+          "0, or the inertia not symmetric and positive definite.")
       .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
       .def_ro("p_TTcm", &ToolInertia::p_TTcm,
               "Center of mass (3,) in the tool's frame, m.")

@@ -139,7 +139,7 @@ BrakingWrenchOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
     const T W = Weight(contact, gains);
     if (ValueOf(W) == 0) continue;
     const Vec3Of<T>& n = contact.nhat_BA_W;
-    const MovingFrameOf<T>& object = objects.at(contact.object);
+    const MovingFrameOf<T>& object = ObjectAt(objects, contact.object);
     const Approach<T> approach(T(SpeedAlong<T>(n, contact.p_WC, tool) -
                                  SpeedAlong<T>(n, contact.p_WC, object)));
     if (approach.engaged == 0) continue;

@@ -55,7 +55,7 @@ void ContactExtrapolation::Advance(const MovedBodyOf<T>& tool,
   }
   for (ContactOf<T>& contact : contacts->contacts) {
     RequireFeatures(contact);
-    const Decomposition& object = *objects_.at(contact.object);
+    const Decomposition& object = *ObjectAt(objects_, contact.object);
     const auto& rest = X_WO_[contact.object];
     MovedBodyOf<T> at_rest;
     if (rest) {

@@ -184,7 +184,7 @@ void ContactShading::Shade(const PoseOf<T>& X_WT,
     RequireFeatures(contact);
     const Mat3Of<T> R_WC = MakeFrame<T>(contact.nhat_BA_W);
     const Side<T> B =
-        FindSide<T>(*objects_.at(contact.object), X_WO[contact.object],
+        FindSide<T>(*ObjectAt(objects_, contact.object), X_WO[contact.object],
                     contact.piece_B, contact.feature_B, contact.p_WCb, R_WC, 1);
     const Side<T> A = FindSide<T>(*tool_, X_WT, contact.piece_A,
                                   contact.feature_A, contact.p_WCa, R_WC, -1);

@@ -122,7 +122,7 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
   Wrenches<T> wrenches(6, clusters.clusters.size());
   Eigen::Index next = 0;
   for (const ClusterOf<T>& cluster : clusters.clusters) {
-    const MovingFrameOf<T>& object = objects.at(cluster.object);
+    const MovingFrameOf<T>& object = ObjectAt(objects, cluster.object);
     const ContactMaterial& material = materials[cluster.object];
     RequireMaterial(material);
     const Vec6Of<T> G = tool.Lever(cluster.p_WC, cluster.nhat_BA_W);

@@ -153,8 +153,8 @@ ContactSetOf<AutoDiff> DifferentiateContacts(
   ContactSetOf<AutoDiff> found;
   found.query_seconds = contacts.query_seconds;
   for (const Contact& contact : contacts.contacts) {
-    found.contacts.push_back(
-        Differentiate(contact, tolerance, tool, objects.at(contact.object)));
+    found.contacts.push_back(Differentiate(contact, tolerance, tool,
+                                           ObjectAt(objects, contact.object)));
   }
   return found;
 }

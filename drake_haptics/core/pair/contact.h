@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "base/autodiff.h"
@@ -49,6 +52,20 @@ void RequireFeatures(const ContactOf<T>& contact);
 /// @throws std::out_of_range if the piece lacks it.
 Feature RequireFeature(const Polytope& piece,
                        const std::array<std::int32_t, 2>& kind_and_index);
+
+/// What is given for the object that a contact names.
+/// @throws std::out_of_range if nothing is: query and force have other objects.
+template <typename OfObjects>
+const auto& ObjectAt(const OfObjects& of_objects, std::int32_t object) {
+  if (object < 0 || static_cast<std::size_t>(object) >= of_objects.size()) {
+    throw std::out_of_range("a contact is with object " +
+                            std::to_string(object) + ", but there are " +
+                            std::to_string(of_objects.size()) +
+                            " here: query and force must have the same "
+                            "objects, in the same order");
+  }
+  return of_objects[object];
+}
 
 /// The contact with numbers of another type, without derivatives.
 template <typename To, typename From>

@@ -6,7 +6,7 @@ double ContactEnergy(const ClusterSet& clusters,
                      const std::vector<double>& stiffness, double tolerance) {
   double energy = 0;
   for (const Cluster& cluster : clusters.clusters) {
-    energy += 0.5 * stiffness.at(cluster.object) * cluster.compression *
+    energy += 0.5 * ObjectAt(stiffness, cluster.object) * cluster.compression *
               (tolerance - cluster.distance);
   }
   return energy;

@@ -197,7 +197,7 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
         _core.differentiate_contacts(
             contacts, T, tool, q, [ground], [constant(np.nan * world.value, 7)]
         )
-    with pytest.raises(IndexError):
+    with pytest.raises(IndexError, match="with object 0, but there are 0 here"):
         _core.differentiate_contacts(contacts, T, tool, q, [], [])
     # A box has one piece, a cup many.
     cup = next(

@@ -56,5 +56,5 @@ def test_an_object_without_a_stiffness_is_refused():
     clusters = _core.cluster_contacts(
         contacts_at(POINTS, DEPTHS, TOLERANCE), 5e-3, TOLERANCE
     )
-    with pytest.raises(IndexError):
+    with pytest.raises(IndexError, match="with object 0, but there are 0 here"):
         _core.contact_energy(clusters, [], TOLERANCE)

@@ -221,7 +221,7 @@ def test_poses_that_are_none_are_refused() -> None:
         )
     with pytest.raises(ValueError, match="X_WO must have one entry for each"):
         ContactExtrapolation(tool, [SLAB], [])
-    with pytest.raises(IndexError):
+    with pytest.raises(IndexError, match="must have the same objects"):
         ContactExtrapolation(tool, [], []).advance(contacts, IDENTITY, IDENTITY)
 
 

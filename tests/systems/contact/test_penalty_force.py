@@ -52,6 +52,13 @@ def fix(force, context, clusters, V_WT=AT_REST):
     force.GetInputPort("V_WT").FixValue(context, V_WT)
 
 
+def test_contacts_with_objects_that_it_does_not_have_are_refused(clusters):
+    force, context = make_force([])
+    fix(force, context, clusters)
+    with pytest.raises(IndexError, match="query and force must have the same objects"):
+        force.GetOutputPort("F_To_W").Eval(context)
+
+
 def test_a_pressed_box_is_pushed_up(plate, clusters):
     assert len(clusters) == 1
     force, context = make_force([ContactObject("plate", plate, RigidTransform())])
