@@ -172,8 +172,9 @@ def make_device_port(
 def _warn_of_less(key: str, asked: float, shown: float, unit: str) -> None:
     """Warns if a device shows less than a limit, which the loop would not notice."""
     if shown < (1.0 - _ROUNDING) * asked:
+        # So many digits that the number, once it is set, does not differ.
         warn_caller(
-            f"the device says that it shows at most {shown:.4g} {unit}, less than the"
+            f"the device says that it shows at most {shown:.7g} {unit}, less than the"
             f" {asked:g} {unit} of {key}: set device.{key} (make_device_port: {key}) to"
-            f" {shown:.4g}, so that passivity control and figures count what is shown"
+            f" {shown:.7g}, so that passivity control and figures count what is shown"
         )

@@ -1,5 +1,6 @@
 """A user's device in a user's plant."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -76,6 +77,17 @@ def test_a_device_that_shows_less_is_told_of(less, sentence):
     reading = replace(hold_at(0.05).read(), **less)
     with pytest.warns(SceneWarning, match=sentence):
         make_device_port(ScriptedDevice(lambda call: reading), **LIMITS)
+
+
+def test_the_limit_that_the_warning_names_is_one_that_the_device_shows(recwarn):
+    reading = replace(hold_at(0.05).read(), max_force_N=float(np.float32(8 / 3)))
+    make_device_port(ScriptedDevice(lambda call: reading), **LIMITS)
+    named = re.search(
+        r"max_force_N\) to ([\d.]+),", str(recwarn.pop(SceneWarning).message)
+    )
+    limits = LIMITS | {"max_force_N": float(named[1])}
+    make_device_port(ScriptedDevice(lambda call: reading), **limits)
+    assert not recwarn.list
 
 
 def test_limits_of_single_precision_are_the_same(recwarn):
